@@ -1,8 +1,10 @@
-"""Recordings to samples: tables, JSON lines, bags and logs of messages, memory.
+"""Readers that turn recordings into samples: tables, JSON lines, bags, logs of messages, memory.
 
-What cannot be read is a `TraceError` wherever it is found, a package that lacks an `RvmonError`.
+Every reader raises `TraceError` for input that it cannot read, and `RvmonError` for a package that
+is not installed.
 
-Here are their formats by file name; it imports next to nothing, as what starts fast needs it.
+This module lists the formats by file name. It imports next to nothing, because programs that must
+start fast import it.
 """
 
 from __future__ import annotations
@@ -26,7 +28,7 @@ MESSAGE_FORMATS = {
     ".hdf5": "hdf5",
     ".mat": "mat",
 }
-"""File name endings and the formats of messages they stand for; a bag of ROS 2 is a folder."""
+"""The format of messages by file name ending; a bag of ROS 2 is a folder."""
 
 FORMATS = {
     ".csv": "csv",
@@ -35,13 +37,13 @@ FORMATS = {
     ".parquet": "parquet",
     **MESSAGE_FORMATS,
 }
-"""File name endings and the formats they stand for; standard input (`-`) is JSON lines."""
+"""The format by file name ending; standard input (`-`) is JSON lines."""
 
-DATABASES = (".dbc", ".kcd", ".sym", ".arxml")  # endings of files that say what frames of CAN hold
+DATABASES = (".dbc", ".kcd", ".sym", ".arxml")  # endings of CAN databases, which define frames
 
 
 def frame_databases(path: str | os.PathLike[str]) -> list[str]:
-    """The files beside a log of CAN that say what its frames hold; none beside others."""
+    """The CAN databases beside a CAN log or an MDF file, sorted; none beside other recordings."""
     folder, name = os.path.split(path)
     if MESSAGE_FORMATS.get(os.path.splitext(name)[1].lower()) not in ("can", "mdf"):
         return []
@@ -49,10 +51,10 @@ def frame_databases(path: str | os.PathLike[str]) -> list[str]:
     return [os.path.join(folder, one) for one in sorted(found)]
 
 
-ARRAYS = frozenset({"hdf5", "mat"})  # the formats in which the stamps are an array among others
+ARRAYS = frozenset({"hdf5", "mat"})  # the formats that store stamps as one array among others
 
 TOPICS = "topics.toml"
-"""In a folder of tables that are one recording: says which file is which topic."""
+"""The file in a folder of tables that names the topic of each table; the folder is a recording."""
 
 _FOLDERS = {"metadata.yaml": "ros2", TOPICS: "tables"}
 
@@ -61,7 +63,7 @@ MESSAGE_FORMS = frozenset({*MESSAGE_FORMATS.values(), *_FOLDERS.values()})
 
 
 def form_of_folder(path: str) -> str:
-    """The format of a folder that is one recording; empty of other folders, and of files."""
+    """The format of a folder that is one recording; "" for other folders and for files."""
     if not os.path.isdir(path):
         return ""
     found = (form for name, form in _FOLDERS.items() if os.path.isfile(os.path.join(path, name)))

@@ -1,4 +1,7 @@
-"""Rows as columns: values, what each row says of them, labels, payloads."""
+"""Batches: rows stored as columns of values, with an entry per row that says how to read them.
+
+An entry of a signal or payload field is `UNKNOWN`, `YES` (the value counts) or `NO_UPDATE`.
+"""
 
 from __future__ import annotations
 
@@ -24,21 +27,21 @@ NO, UNKNOWN, YES, NO_UPDATE = 0, 1, 2, 255
 
 
 class NotPlainError(Exception):
-    """The recording has to be read row by row; the message says why."""
+    """The recording does not fit into columns and must be read row by row; the message says why."""
 
 
 class Cells(Struct, frozen=True, dict=True):
-    """The values of a signal or of a field."""
+    """The cells of a signal or payload field in some rows."""
 
-    # float64[n], int64[n] or bool[n]; of labels int32[n], places in `labels`. NaN is unknown
+    # float64[n], int64[n] or bool[n]; for labels int32[n], indices into `labels`. NaN is unknown
     values: NDArray[Any]
-    # uint8[n], `UNKNOWN`, `YES` or `NO_UPDATE`; `None`: there is a value in each row
+    # uint8[n], `UNKNOWN`, `YES` or `NO_UPDATE`; `None`: each row has a value
     says: NDArray[np.uint8] | None = None
-    labels: Sequence[str] | None = None  # the labels by place; `None`: these are no labels
+    labels: Sequence[str] | None = None  # `None`: the values are no labels
 
     @property
     def first_said(self) -> int | None:
-        """The first row that says something, of which there is one."""
+        """The first row with an update; `None`: there is none. There must be at least one row."""
         if self.says is None:
             return 0
         said = self.says != NO_UPDATE
@@ -46,7 +49,7 @@ class Cells(Struct, frozen=True, dict=True):
 
     @property
     def last_said(self) -> int | None:
-        """The last row that says something; `None`: there is none."""
+        """The last row with an update; `None`: there is none."""
         count = len(self.values)
         if not count or self.says is None or self.says[-1] != NO_UPDATE:
             return count - 1 if count else None
@@ -55,7 +58,7 @@ class Cells(Struct, frozen=True, dict=True):
 
     @property
     def holds_value(self) -> bool:
-        """Whether some row says what it is."""
+        """Whether some row has a known value."""
         unknown = self.unknown
         if self.says is None:
             return len(self.values) > 0 if unknown is None else not unknown.all()
@@ -64,7 +67,7 @@ class Cells(Struct, frozen=True, dict=True):
 
     @cached_property
     def unknown(self) -> NDArray[np.bool_] | None:
-        """The rows that say that it is unknown, by NaN or otherwise; `None`: there is none."""
+        """A mask of the rows with an unknown value, NaN or `UNKNOWN`, bool[n]; `None`: no row."""
         found = None if self.says is None else self.says == UNKNOWN
         if holds_nan(self.values):
             nan = np.isnan(self.values)
@@ -74,18 +77,18 @@ class Cells(Struct, frozen=True, dict=True):
         return found if found is not None and found.any() else None
 
     def cut(self, start: int, stop: int) -> Cells:
-        """Some of the rows."""
+        """The cells of rows `start` to `stop`, without `stop`."""
         says = None if self.says is None else self.says[start:stop]
         return Cells(self.values[start:stop], says, self.labels)
 
     def spread(self, rows: NDArray[np.intp], count: int) -> Cells:
-        """The same at some of more rows; the others say nothing."""
+        """Put the cells at `rows` of `count` rows; the other rows get no update."""
         values = np.zeros(count, self.values.dtype)
         values[rows] = self.values
         return Cells(values, _spread(self.says, rows, count), self.labels)
 
     def of_rows(self, start: int, stop: int) -> Iterator[Any]:
-        """The values of rows as in samples; `NO_UPDATE` itself where there is none."""
+        """Yield the values of rows as they are in samples; `_NOTHING` where there is no update."""
         values = self.values[start:stop].tolist()
         says = repeat(YES) if self.says is None else self.says[start:stop].tolist()
         for value, said in zip(values, says, strict=False):
@@ -98,15 +101,15 @@ class Cells(Struct, frozen=True, dict=True):
 
 
 class Occurrences(Struct, frozen=True):
-    """The occurrences of an event."""
+    """The occurrences of an event in some rows."""
 
-    says: NDArray[np.uint8]  # uint8[n]
-    # by name; a row with a value of one has a payload
+    says: NDArray[np.uint8]  # uint8[n], `NO`, `UNKNOWN`, `YES` or `NO_UPDATE`
+    # cells of payload fields by name; an occurrence with an update of a field has a payload
     fields: Mapping[str, Cells] = field(default_factory=dict)
 
     @property
     def with_payload(self) -> NDArray[np.bool_]:
-        """Whether it comes with a payload, bool[n]."""
+        """A mask of the rows in which the event occurs with a payload, bool[n]."""
         found = np.zeros(len(self.says), np.bool_)
         for cells in self.fields.values():
             found |= np.True_ if cells.says is None else cells.says != NO_UPDATE
@@ -114,22 +117,22 @@ class Occurrences(Struct, frozen=True):
         return found
 
     def cut(self, start: int, stop: int) -> Occurrences:
-        """Some of the rows."""
+        """The occurrences in rows `start` to `stop`, without `stop`."""
         fields = {name: cells.cut(start, stop) for name, cells in self.fields.items()}
         return Occurrences(self.says[start:stop], fields)
 
     def spread(self, rows: NDArray[np.intp], count: int) -> Occurrences:
-        """As `Cells.spread`."""
+        """Put the occurrences at `rows` of `count` rows; see `Cells.spread`."""
         fields = {name: cells.spread(rows, count) for name, cells in self.fields.items()}
         return Occurrences(_spread(self.says, rows, count), fields)
 
     @property
     def unknown(self) -> NDArray[np.bool_] | None:
-        """The rows at which it may occur; `None`: there is none."""
+        """A mask of the rows in which the event may have occurred, bool[n]; `None`: no row."""
         return self.says == UNKNOWN if UNKNOWN in self.says.tobytes() else None
 
     def of_rows(self, start: int, stop: int) -> Iterator[Any]:
-        """As `Cells.of_rows`."""
+        """Yield the values of rows as they are in samples; see `Cells.of_rows`."""
         payloads: list[dict[str, Any]] = [{} for _ in range(start, stop)]
         for name, cells in self.fields.items():
             for payload, value in zip(payloads, cells.of_rows(start, stop), strict=True):
@@ -145,21 +148,22 @@ _SAID = {NO: False, UNKNOWN: None, NO_UPDATE: _NOTHING}
 
 
 class Batch(Struct, frozen=True):
-    """Some rows of a recording."""
+    """Consecutive rows of a recording, stored as columns."""
 
-    times: NDArray[np.int64]  # int64[n] ticks; there may be several rows of one instant
+    times: NDArray[np.int64]  # int64[n] ticks; several rows may have the same instant
     signals: Mapping[str, Cells]  # by name
     events: Mapping[str, Occurrences]  # by name
     first: int = 0  # number of the first row, or of its line
-    lines: NDArray[np.int64] | None = None  # int64[n], of each row; `None`: they follow each other
+    # int64[n], number of the line of each row; `None`: numbers are consecutive from `first`
+    lines: NDArray[np.int64] | None = None
     is_last: bool = False  # whether it is known that no row follows
 
     def number_of(self, row: int) -> int:
-        """The number of a row, or of its line."""
+        """The number of a row, or of its line, for a message."""
         return self.first + row if self.lines is None else int(self.lines[row])
 
     def cut(self, start: int, stop: int) -> Batch:
-        """Some of the rows."""
+        """The batch of rows `start` to `stop`, without `stop`."""
         return Batch(
             self.times[start:stop],
             {name: signal.cut(start, stop) for name, signal in self.signals.items()},
@@ -169,7 +173,7 @@ class Batch(Struct, frozen=True):
         )
 
     def rows(self, start: int, stop: int) -> Iterator[Sample]:
-        """Some of the rows, one by one."""
+        """Yield rows `start` to `stop`, each as a sample of its own."""
         both: Mapping[str, Cells | Occurrences] = {**self.signals, **self.events}
         columns = {name: one.of_rows(start, stop) for name, one in both.items()}
         for t in self.times[start:stop].tolist():
@@ -181,33 +185,36 @@ class Batch(Struct, frozen=True):
             yield Sample(t, found)
 
     def samples(self, start: int = 0, stop: int | None = None) -> Iterator[Sample]:
-        """Rows as samples, those of one instant merged; see `coalesce`."""
+        """Yield rows as samples, those of one instant merged; see `coalesce`."""
         rows = self.rows(start, len(self.times) if stop is None else stop)
         return coalesce(rows, self.events, Conflicts())
 
     def numbered(self) -> Iterator[tuple[int, int, Mapping[str, Value]]]:
-        """Number, ticks and values of each row."""
+        """Yield the number, ticks and values of each row."""
         for row, sample in enumerate(self.rows(0, len(self.times))):
             yield self.number_of(row), sample.t, sample.values
 
     def without(self, names: Set[str]) -> Batch:
-        """The rows with nothing of some names."""
+        """The batch without the columns of some names."""
         signals = {name: signal for name, signal in self.signals.items() if name not in names}
         events = {name: event for name, event in self.events.items() if name not in names}
         return replace(self, signals=signals, events=events)
 
     def up_to(self, until: int | None) -> Batch:
-        """The rows up to an instant (ticks); all of them without one."""
+        """The batch of the rows up to an instant (ticks), inclusive; `None`: all rows."""
         if until is None or not len(self.times) or self.times[-1] <= until:
             return self
         return self.cut(0, int(self.times.searchsorted(until, "right")))
 
 
 def outer_join(batches: Sequence[Batch], first: int) -> Batch | None:
-    """Rows of several sources by time, each saying nothing where it has no row.
+    """Join batches of several sources by time; a source has no update where it has no row.
+
+    `first` is the number of the first joined row.
 
     Returns:
-        `None` if a name is in two of them, or an instant twice in one: these are merged as samples.
+        The batch; `None` if a name is in two batches or an instant is in one batch twice, as such
+        rows must be merged as samples.
     """
     names = [name for batch in batches for name in (*batch.signals, *batch.events)]
     is_twice = any((batch.times[1:] == batch.times[:-1]).any() for batch in batches)
@@ -226,14 +233,14 @@ def outer_join(batches: Sequence[Batch], first: int) -> Batch | None:
 def _spread(
     says: NDArray[np.uint8] | None, rows: NDArray[np.intp], count: int
 ) -> NDArray[np.uint8]:
-    """The entries spread over more rows, with `NO_UPDATE` in the others."""
+    """Put entries at `rows` of `count` rows, and `NO_UPDATE` in the others."""
     made = np.full(count, NO_UPDATE, np.uint8)
     made[rows] = YES if says is None else says
     return made
 
 
 def without_ignored(batch: Batch, ignoring: frozenset[str]) -> Batch:
-    """The rows without NaN and null of signals of which these are no update."""
+    """Turn NaN and null into "no update" for the signals in `ignoring`."""
     own = {name: batch.signals[name] for name in ignoring & batch.signals.keys()}
     changed = {}
     for name, cells in own.items():
@@ -245,16 +252,16 @@ def without_ignored(batch: Batch, ignoring: frozenset[str]) -> Batch:
 
 
 def holds_nan(values: NDArray[Any]) -> bool:
-    """Whether some number is NaN."""
+    """Whether some value is NaN."""
     if values.dtype.kind != "f" or not len(values):
         return False
-    return isnan(values[values.argmax()])  # NaN is above all
+    return isnan(values[values.argmax()])  # `argmax` ranks NaN above all numbers
 
 
 def note_batch(batch: Batch, rise: bool, alternations: Alternations, conflicts: Conflicts) -> None:
-    """Note how unknown values alternate with known ones, and where there are two of one instant.
+    """Note how unknown values alternate with known ones, and where one instant has two values.
 
-    `rise`: whether it is known that each row has an instant of its own.
+    `rise`: whether it is known that no two rows have the same instant.
     """
     for name, cells in batch.signals.items():
         if not rise:
@@ -277,7 +284,7 @@ def _note(
     said: NDArray[Any] | None,
     count: int,
 ) -> None:
-    """Note what some rows say, of all if `said` is `None`."""
+    """Note the known and unknown updates in the rows `said` (a mask, or indices; `None`: all)."""
     if unknown is not None:
         looked_at = unknown if said is None else unknown[said]
         if looked_at.any():
@@ -291,19 +298,19 @@ def _note(
 
 
 def _said(cells: Cells) -> NDArray[Any] | None:
-    """Which rows say something; `None`: all."""
+    """A mask of the rows with an update, bool[n]; `None`: all."""
     return None if cells.says is None else cells.says != NO_UPDATE
 
 
 def last_said(batch: Batch, cells: Cells) -> NDArray[np.intp]:
-    """The rows that say something, the last of each instant."""
+    """The last row with an update at each instant."""
     rows = _rows_said(batch, cells)
     times = batch.times[rows]
     return rows[np.append(times[1:] != times[:-1], True)] if len(rows) else rows
 
 
 def _note_conflicts(batch: Batch, name: str, cells: Cells, conflicts: Conflicts) -> None:
-    """Count where neighbours of one instant say different things of a signal."""
+    """Count neighbouring updates of a signal that differ at the same instant."""
     rows = _rows_said(batch, cells)
     times, values = batch.times[rows], cells.values[rows]
     differs = values[1:] != values[:-1]
@@ -324,7 +331,10 @@ def _rows_said(batch: Batch, cells: Cells) -> NDArray[np.intp]:
 def unknown_rows(
     batch: Batch, cells: Cells, *, is_signal: bool
 ) -> Iterator[tuple[bool, NDArray[np.int64]]]:
-    """The instants at which NaN (true), or null, is the last that is said of a signal, or field."""
+    """Yield whether values are NaN (else null), and the instants (ticks) of these values.
+
+    Of a signal only the last update at each instant counts, of a payload field every one.
+    """
     unknown = cells.unknown
     if unknown is None:
         return

@@ -1,4 +1,4 @@
-"""Columns of arrays, of Arrow and of values of Python as cells."""
+"""Conversion of columns (NumPy arrays, Arrow arrays, Python values) to cells and batches."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ from rvmon.trace.schema import Gaps, Kind
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-_EXACT = 1 << 53  # floats up to here are the whole numbers that they stand for
-_WIDEST = 8  # bytes of the widest numbers that are numbers of Python, too
+_EXACT = 1 << 53  # up to here, a float represents every integer exactly
+_WIDEST = 8  # bytes; wider numbers (long double) are no Python numbers
 
 _TYPES = {Kind.BOOL: np.bool_, Kind.INT: np.int64, Kind.REAL: np.float64, Kind.LABEL: np.int32}
 
@@ -38,7 +38,7 @@ def batch_of(
     first: int = 0,
     lines: NDArray[np.int64] | None = None,
 ) -> Batch:
-    """Rows of columns, read as rows are: see `rvmon.recordings.csv_rows.row_values`.
+    """Make a batch of columns, with the meaning of `rvmon.recordings.csv_rows.row_values`.
 
     `first` and `lines` are those of `Batch`.
     """
@@ -60,7 +60,7 @@ def batch_of(
 
 
 def _where(cells: Cells, heard: NDArray[np.bool_]) -> Cells:
-    """The same, but that rows say nothing where they are not heard."""
+    """The cells with "no update" in the rows where `heard` is false."""
     if heard.all():
         return cells
     says = np.uint8(YES) if cells.says is None else cells.says
@@ -68,7 +68,11 @@ def _where(cells: Cells, heard: NDArray[np.bool_]) -> Cells:
 
 
 def occurrences(own: Cells | None, fields: Iterable[Cells], count: int) -> NDArray[np.uint8]:
-    """The occurrences of an event: by its own cell; with a payload, unless that is false."""
+    """The entries of an event per row, uint8[n].
+
+    An event occurs where its own cell says so, and where a payload field has a cell, unless its own
+    cell is false.
+    """
     if own is None:
         says = np.full(count, NO_UPDATE, np.uint8)
     else:
@@ -84,12 +88,12 @@ def occurrences(own: Cells | None, fields: Iterable[Cells], count: int) -> NDArr
 def cells_of_array(
     values: NDArray[Any], given: NDArray[np.bool_] | None, kind: Kind, gaps: Gaps
 ) -> Cells:
-    """An array as a column.
+    """Convert an array to cells.
 
-    `given`: bool[n], where there is a value; `None`: everywhere.
+    `given`: bool[n], the rows that have a value; `None`: all.
 
     Raises:
-        NotPlainError: it holds other values than were declared.
+        NotPlainError: the array holds values of another kind than the declared one.
     """
     found = values.dtype.kind
     if found not in "bif" or values.dtype.itemsize > _WIDEST or kind is Kind.LABEL:
@@ -109,7 +113,7 @@ def cells_of_array(
     looked_at = known if given is None else known & given
     whole = np.where(looked_at, values, 0)
     least, most = (0, 1) if kind is Kind.BOOL else (-_EXACT, _EXACT)
-    is_within = ((least <= whole) & (whole <= most)).all()  # NumPy warns of a cast of what is not
+    is_within = ((least <= whole) & (whole <= most)).all()  # else NumPy warns of the cast below
     if not is_within or ((made := whole.astype(np.int64)) != whole).any():
         raise NotPlainError("a column holds other values than were declared")
     if not known.all():
@@ -119,7 +123,7 @@ def cells_of_array(
 
 
 def kept(values: NDArray[Any], gaps: Gaps) -> NDArray[np.bool_]:
-    """A mask of the values that are updates."""
+    """A mask of the values that do not mean "no update", bool[n]."""
     found = np.ones(len(values), bool)
     if gaps.nan and values.dtype.kind == "f":
         found &= values == values
@@ -132,10 +136,10 @@ def kept(values: NDArray[Any], gaps: Gaps) -> NDArray[np.bool_]:
 def cells_of_labels(
     places: NDArray[Any], given: NDArray[np.bool_] | None, labels: Sequence[Any], gaps: Gaps
 ) -> Cells:
-    """Places of labels as a column.
+    """Convert indices into `labels` to cells; `given` as for `cells_of_array`.
 
     Raises:
-        NotPlainError: what they stand for is no text.
+        NotPlainError: a label is no text.
     """
     if not all(isinstance(label, str) for label in labels):
         raise NotPlainError("a label is no text")
@@ -147,10 +151,10 @@ def cells_of_labels(
 
 
 def cells_of_values(cells: Sequence[Any], kind: Kind, gaps: Gaps, nothing: object = None) -> Cells:
-    """Values of Python as a column; `nothing`, too, stands for no update.
+    """Convert Python values to cells; the object `nothing` means "no update".
 
     Raises:
-        NotPlainError: one of them is none of its kind.
+        NotPlainError: a value is not of the declared kind.
     """
     made = None if gaps else _cells_alike(cells, kind, nothing)
     if made is not None:
@@ -188,7 +192,10 @@ _ALIKE: Mapping[Kind, frozenset[type]] = {
 
 
 def _cells_alike(cells: Sequence[Any], kind: Kind, nothing: object) -> Cells | None:
-    """Values of which all are of the kind's own types, or nothing; `None`: they are not."""
+    """The cells of values that all have the kind's own type or are `nothing`; else `None`.
+
+    This common case needs no look at each value: NumPy converts the whole list.
+    """
     types = set(map(type, cells))
     if types <= _ALIKE[kind]:
         if kind is not Kind.LABEL:
@@ -215,10 +222,10 @@ def _array(values: Sequence[Any], kind: Kind) -> NDArray[Any]:
 
 
 def cells_of_arrow(column: Any, kind: Kind, gaps: Gaps) -> Cells:
-    """An array of Arrow as a column; null says nothing.
+    """Convert an Arrow array to cells; null is no update.
 
     Raises:
-        NotPlainError: it holds other values than were declared.
+        NotPlainError: the array holds values of another kind than the declared one.
     """
     import pyarrow
     from pyarrow import types
@@ -245,11 +252,11 @@ def cells_of_arrow(column: Any, kind: Kind, gaps: Gaps) -> Cells:
 
 
 def cells_of_column(name: str, column: Any, kind: Kind, gaps: Gaps) -> Cells:
-    """A column of a table in memory; see `rvmon.recordings.tables.columns_by_name`.
+    """Convert a column of a table in memory; see `rvmon.recordings.tables.columns_by_name`.
 
     Raises:
-        NotPlainError: it holds other values than were declared.
-        TraceError: it is no column.
+        NotPlainError: the column holds values of another kind than the declared one.
+        TraceError: the object is no array or list.
     """
     from rvmon.recordings.tables import cells_of
 
@@ -262,11 +269,11 @@ def cells_of_column(name: str, column: Any, kind: Kind, gaps: Gaps) -> Cells:
         values = column.data
     elif callable(getattr(column, "to_arrow", None)) and callable(
         getattr(column, "null_count", None)
-    ):  # of polars
+    ):  # polars
         if kind is not Kind.LABEL and not column.null_count():
             values = column.to_numpy()
     elif hasattr(column, "isna") and type(column.dtype).__module__.startswith("numpy"):
-        values = column.to_numpy()  # of pandas
+        values = column.to_numpy()  # pandas
     is_array = type(values) in (np.ndarray, np.memmap) and values.ndim == 1
     if is_array and kind is not Kind.LABEL and values.dtype.kind in "bif":
         return cells_of_array(values, given, kind, gaps)

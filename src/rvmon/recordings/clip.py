@@ -1,4 +1,4 @@
-"""A piece of a recording as a recording of the same format; of Parquet here."""
+"""Clipping: writes a piece of a recording in the same format. Parquet is clipped here."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ CLIPPED = {
     "ros1": "bags of ROS 1",
     "ros2": "bags of ROS 2",
 }
-"""The formats that pieces are cut out of, and what they are called."""
+"""The formats that can be clipped, with their names for messages."""
 
 
 def refuse_place(path: str, out: str | None) -> None:
-    """Say, before any work is done for it, that a piece of a recording cannot go to a place.
+    """Check, before any work is done, that a piece of a recording can be written to a place.
 
     Raises:
-        RvmonError: no piece can be cut out of the recording's format, or the place has the ending
-            of another, or is a folder that is there.
+        RvmonError: the recording cannot be clipped, or `out` has the ending of another format, or
+            `out` exists where a bag would be a new folder.
         TraceError: the recording has no known format.
     """
     form = format_of(path)
@@ -61,7 +61,12 @@ def refuse_place(path: str, out: str | None) -> None:
 
 
 def clip(path: str, piece: Piece, out: str) -> Copied:
-    """Write a piece of a recording (of an address: of its copy), whole or not at all."""
+    """Write a piece of a recording, whole or not at all.
+
+    Raises:
+        TraceError: the recording cannot be read, or the piece is empty.
+        RvmonError: the piece cannot be written.
+    """
     with writing(out), staged(out) as made:
         try:
             copied = _written(path, piece, made)
@@ -92,9 +97,9 @@ def _written(path: str, piece: Piece, out: Path) -> Copied:
 
 
 def clip_parquet(path: Path, piece: Piece, out: Path) -> Copied:
-    """Write a piece of a file, and report what is in it."""
+    """Write a piece of a Parquet file, and report what was copied."""
     schema = parquet_file(path).schema_arrow
-    if piece.held:  # the row that brings values along lacks others
+    if piece.held:  # the first row, made for carried-in values, has no cells in other columns
         for place, field in enumerate(schema):
             schema = schema.set(place, field.with_nullable(True))
     import numpy as np
@@ -108,7 +113,7 @@ def clip_parquet(path: Path, piece: Piece, out: Path) -> Copied:
         stamps = FileRecording(path, piece.without_names, ordered=piece.ordered).stamps()
         ahead = np.empty(0, np.int64)
         for arrays in parquet_batches(path, schema.names):
-            # Where columns have dictionaries, fewer rows come together than of stamps alone.
+            # Batches of columns with dictionaries may be shorter than those of stamps alone.
             while len(ahead) < len(arrays[0]):
                 ahead = np.concatenate([ahead, next(stamps)[1]])
             instants, ahead = np.split(ahead, [len(arrays[0])])
@@ -123,7 +128,7 @@ def clip_parquet(path: Path, piece: Piece, out: Path) -> Copied:
 
 
 def _start(piece: Piece, layout: Layout, schema: Any) -> Any:
-    """A row of the values that are brought along."""
+    """The row of values carried in from before the piece, as a table."""
     import pyarrow
 
     cells: list[Any] = [None] * len(layout.header)
@@ -138,7 +143,7 @@ def _start(piece: Piece, layout: Layout, schema: Any) -> Any:
 
 
 def _stamp(ticks: int, stamps: Stamps, kind: Any) -> Any:
-    """An instant, or the nearest one before it that the column can hold."""
+    """An instant as a column of one stamp; the nearest one before it that the type can hold."""
     import pyarrow
 
     if pyarrow.types.is_timestamp(kind):

@@ -1,4 +1,4 @@
-"""Pieces of bags of ROS and of MCAP files: messages are copied byte for byte."""
+"""Clipping of ROS bags and MCAP files, whose messages are copied byte for byte."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ from rvmon.recordings.places import local_path
 from rvmon.trace.schema import Bound, Clock
 
 _Raw = tuple[str, Any, int, Any]
-"""Topic, channel, ticks at which it was recorded, and the message as the library has it."""
+"""A message: topic, channel, ticks of its log stamp, and the library's object for it."""
 
 _Read = Callable[[Collection[str] | None, int, int], Iterator[_Raw]]
-"""Gives the messages of topics (`None`: all) from an instant on to one that is left out."""
+"""Yields the messages of topics (`None`: all) from one instant up to another, exclusive."""
 
 _KEPT_FOR_LATE = re.compile(r"durability:\s*(1\b|transient_local)")
-"""In the qualities of service of ROS 2: who subscribes late gets the last message."""
+"""In a ROS 2 quality of service: late subscribers get the last message, so the topic is latched."""
 
 
 def clip_messages(path: str, form: str, piece: Piece, out: Path) -> Copied:
-    """Write a piece of a recording of messages, and report what is in it.
+    """Write a piece of a recording of messages, and report what was copied.
 
-    Where the stamps of headers count, what is copied was recorded between the first and the last
-    message that lie in the piece. Of each topic that feeds what it brings along, and of each that
-    serves late subscribers, the last message is put at its start.
+    The piece is cut by log stamps. Where times are those of headers, the cut runs from the first to
+    the last message whose header stamp lies in the piece. The last message before the start is
+    put at the start for each topic that feeds a carried-in value, and for each latched topic.
     """
     place = local_path(path)
     with closing(open_messages(place, form, piece.schema)) as source:
@@ -48,7 +48,7 @@ def clip_messages(path: str, form: str, piece: Piece, out: Path) -> Copied:
 
 
 def _as_recorded(source: Messages, bounds: Mapping[str, Bound], piece: Piece) -> Piece:
-    """The piece by the clock of the recorder."""
+    """The piece with its start and stop as log stamps."""
     clocks = {bound.topic: bound.clock or piece.schema.binding.clock for bound in bounds.values()}
     stamped = [topic for topic, clock in clocks.items() if clock is Clock.HEADER]
     getters = {topic: stamp_getter(source.topics[topic]) for topic in stamped}
@@ -63,16 +63,17 @@ def _as_recorded(source: Messages, bounds: Mapping[str, Bound], piece: Piece) ->
 def _chosen(
     read: _Read, piece: Piece, brought: Collection[str], latched: Collection[Any]
 ) -> Iterator[tuple[int, _Raw]]:
-    """The messages of a piece with the instants that they get.
+    """Yield the messages of a piece, each with the instant (ticks) at which it is written.
 
-    The last message before the piece comes along of topics (`brought`) and channels (`latched`).
+    For topics in `brought` and channels in `latched`, the last message before the piece is included
+    and written at the start, unless there is one at the start anyway.
     """
     last: dict[Any, _Raw] = {}
     topics = {*brought, *(topic for topic, _ in latched)}
     for raw in read(topics, 0, piece.start) if topics else ():
         key = raw[:2] if raw[:2] in latched else raw[0]
         if key in brought or key in latched:
-            last.pop(key, None)  # in the order of the messages
+            last.pop(key, None)  # keeps `last` in the order of the messages
             last[key] = raw
     inside = read(None, piece.start, piece.stop + 1)
     first: list[_Raw] = []
@@ -91,7 +92,7 @@ def _chosen(
 
 
 def _copied(chosen: Iterator[tuple[int, _Raw]], write: Callable[[int, _Raw], object]) -> Copied:
-    """Write messages, and note those that are not brought along."""
+    """Write messages, and count those that were not carried in."""
     copied = Copied()
     for t, raw in chosen:
         write(t, raw)
@@ -148,7 +149,7 @@ def _clip_mcap(
 
 
 def _channels(reader: Any) -> Iterator[tuple[Any, Any]]:
-    """The channels with their schemas; by all messages where the file has no index of them."""
+    """Yield schemas and channels; if the file has no index of them, by reading all messages."""
     summary = reader.get_summary()
     if summary is not None and summary.channels:
         for channel in summary.channels.values():
@@ -179,7 +180,7 @@ def _clip_ros2(
     is_folder = path.is_dir()
     is_mcap = is_folder and any(path.glob("*.mcap*"))
     plugin = StoragePlugin.MCAP if is_mcap else StoragePlugin.SQLITE3
-    # A database alone is what the folder of a bag has in it.
+    # The library writes a folder; of a bag that is a database alone, only the database is kept.
     folder = out if is_folder else out.with_name(f"{out.name}.bag")
     writer = Writer(folder, version=9, storage_plugin=plugin)
     copied = _clip_bag("ros2", path, piece, brought, happening, writer)
@@ -189,7 +190,7 @@ def _clip_ros2(
 
 
 def _said_of(form: str, connection: Any) -> tuple[dict[str, Any], bool]:
-    """What is said of a connection in a new bag; whether it serves late subscribers."""
+    """The arguments for copying a connection to a new bag, and whether its topic is latched."""
     own = connection.ext
     if form == "ros1":
         said = {"md5sum": connection.digest, "callerid": own.callerid, "latching": own.latching}
@@ -217,8 +218,8 @@ def _clip_bag(
             for connection in reader.connections
             if connection.topic not in happening and _said_of(form, connection)[1]
         }
-        # All, in their order: by it messages of one instant are read again, and a topic without
-        # messages is there all the same. Publishers that are distinguished by nothing are one.
+        # Copy all connections in order: messages of one instant are read back in that order, and
+        # topics without messages are kept. Connections that do not differ become one.
         alike: dict[Any, Any] = {}
         connections = {}
         for one in reader.connections:

@@ -1,4 +1,4 @@
-"""Pieces cut out of a recording; the rows of CSV and JSON lines are copied as they stand."""
+"""Pieces of a recording. Rows of CSV and JSON lines are clipped here, and copied unchanged."""
 
 from __future__ import annotations
 
@@ -38,20 +38,21 @@ class Piece(Struct, frozen=True):
     """A stretch of a recording."""
 
     start: int  # its first instant, ticks
-    stop: int  # its last one
+    stop: int  # its last instant, ticks
     schema: Schema  # the declared names, and how the recording names them
-    ordered: bool = True  # whether nothing comes late, so that what lies behind it is not read
-    # the values that signals bring along from before its start, by name
+    ordered: bool = True  # whether no sample is late, so that reading stops after the piece
+    # carried-in values: by name, those that signals have from before the start
     held: Mapping[str, Value] = field(default_factory=dict)
 
     def holds(self, t: Any) -> Any:
-        """Whether an instant (ticks) lies in it, or each of an array."""
+        """Whether an instant (ticks) lies in the piece; for an array, a mask."""
         return (self.start <= t) & (t <= self.stop)
 
     def held_of(self, instants: NDArray[Any]) -> tuple[NDArray[Any], bool]:
-        """Which of instants, as they come, lie in it; whether nothing that comes behind them does.
+        """A mask of the instants that lie in the piece, and whether no later instant can.
 
-        Where nothing comes late, what comes behind its end is not part of it, whatever it is.
+        `instants`: in order of the rows. In an ordered recording nothing after the first instant
+        beyond the end belongs to the piece, even if time goes back there, which is an error.
         """
         import numpy as np
 
@@ -63,19 +64,19 @@ class Piece(Struct, frozen=True):
 
     @property
     def without_names(self) -> Schema:
-        """By which nothing but its stamps is read of a row: most lie before the piece."""
+        """The schema without names, to read stamps only: most rows lie outside of the piece."""
         return replace(self.schema, signals={}, events={})
 
 
 class Copied(Struct):
-    """The part of a recording that is in a piece, without the values carried in from before it."""
+    """A count of the samples copied to a piece, without the carried-in values."""
 
     count: int = 0
     first: int = TIME_LIMIT
     last: int = -TIME_LIMIT
 
     def note(self, *instants: int) -> None:
-        """Count what was copied, by its instants (ticks)."""
+        """Count copied samples by their instants (ticks)."""
         self.count += len(instants)
         self.first = min(self.first, *instants)
         self.last = max(self.last, *instants)
@@ -89,9 +90,10 @@ def values_before(
     *,
     ordered: bool,
 ) -> dict[str, Value]:
-    """The last values that signals had before an instant, but for those that get one at it.
+    """The values that signals carry into a piece: their last ones before its start.
 
-    `stale_after`: by signal the ticks after which a value counts no more.
+    A signal with an update at the start carries none. `stale_after`: by signal, the age (ticks)
+    above which a value is not carried.
 
     >>> from rvmon.trace.schema import Kind
     >>> schema = Schema({"speed": Kind.REAL, "ready": Kind.BOOL}, {"go": {}})
@@ -109,7 +111,7 @@ def values_before(
             for name, (t, value) in updates.last_in(own, names):
                 if name not in last or t >= last[name][0]:
                     last[name] = t, value
-        if ordered and last_of(piece) > start:  # what comes then may be broken
+        if ordered and last_of(piece) > start:  # do not read on: the rest may be broken
             break
     held: dict[str, Value] = {}
     for name in names:
@@ -123,7 +125,7 @@ _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 
 def stamp_text(ticks: int, stamps: Stamps) -> str:
-    """An instant as a cell of text, exactly.
+    """An instant as the text of a cell, exactly.
 
     >>> stamp_text(1_500_000, Stamps("t", "ms")), stamp_text(-1, Stamps("t", "iso"))
     ('1.5', '1969-12-31T23:59:59.999999999Z')
@@ -139,7 +141,7 @@ def stamp_text(ticks: int, stamps: Stamps) -> str:
 
 
 def stamp_number(ticks: int, stamps: Stamps) -> int | float:
-    """An instant as a number that is read as this instant, or as the nearest one before it.
+    """An instant as a number that reads as this instant, or as the nearest possible one before it.
 
     >>> stamp_number(2 * 10**9, Stamps("t", "s")), stamp_number(10**8, Stamps("t", "s"))
     (2, 0.1)
@@ -154,7 +156,7 @@ def stamp_number(ticks: int, stamps: Stamps) -> int | float:
 
 
 def clip_text(path: str, piece: Piece, out: Path, *, is_csv: bool) -> Copied:
-    """Write a piece of a text, and report what is in it."""
+    """Write a piece of a CSV or JSON lines file, and report what was copied."""
     with (
         opened(path) as (plain, _),
         TextIOWrapper(plain, encoding="utf-8-sig", newline="") as text,
@@ -182,9 +184,9 @@ def _copy(
     piece: Piece,
     made: TextIO,
 ) -> Copied:
-    """Copy the rows of a piece from the lines behind the first `line`; see `FileRecording.stamps`.
+    """Copy the rows of a piece; `lines` starts after line `line`, `stamps`: `FileRecording.stamps`.
 
-    A row takes the lines behind that of the row before, and ends on its own.
+    A row consists of the lines after that of the previous row, up to its own line.
     """
     copied = Copied()
     for ends, instants in stamps:

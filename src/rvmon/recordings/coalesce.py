@@ -1,4 +1,7 @@
-"""Updates with equal stamps become one sample (SEMANTICS 1)."""
+"""Merging of updates with equal stamps into one sample, and findings about unknown values.
+
+Source: SEMANTICS 1.
+"""
 
 from __future__ import annotations
 
@@ -18,23 +21,23 @@ if TYPE_CHECKING:
 
 
 class Conflicts:
-    """Signals that got two values at one stamp; the later one in source order was kept."""
+    """Signals with two values at one stamp, of which the later one in source order was kept."""
 
     def __init__(self) -> None:
         self._seen: dict[str, tuple[int, int]] = {}
 
     def add(self, name: str, t: int, count: int = 1) -> None:
-        """Count conflicts of signal `name`, the first of them at instant `t`."""
+        """Count conflicts of signal `name`, the first one at instant `t` (ticks)."""
         before, first = self._seen.get(name, (0, t))
         self._seen[name] = (before + count, first)
 
     @property
     def seen(self) -> Mapping[str, tuple[int, int]]:
-        """By signal how many there were, and the first's instant."""
+        """By signal, the number of conflicts and the instant of the first one."""
         return self._seen
 
     def health(self) -> list[Health]:
-        """One entry per signal, the earliest first, whether rows or columns were looked through."""
+        """One finding per signal, the earliest first, so that rows and columns report alike."""
         return [
             Health(HealthKind.CONFLICT, name, count, first, remark="two values at one stamp")
             for first, name, count in sorted((t, name, n) for name, (n, t) in self._seen.items())
@@ -46,8 +49,8 @@ def coalesce(
 ) -> Iterator[Sample]:
     """Merge neighbouring samples with equal stamps.
 
-    Events are or-ed, payloads of one event are collected in a tuple; of a signal's values the
-    last one is kept and two that differ are counted.
+    An event occurs if it occurs in one of them, and payloads of one event are collected in a tuple.
+    A signal keeps its last value; differing values are counted as conflicts.
 
     >>> pair = [Sample(1, {"go": True, "v": 1.0}), Sample(1, {"go": False, "v": 2.0})]
     >>> [dict(sample.values) for sample in coalesce(pair, {"go"}, Conflicts())]
@@ -67,7 +70,7 @@ def coalesce(
 
 
 def updates_in(values: Mapping[str, Value], ignoring: frozenset[str]) -> Mapping[str, Value]:
-    """The updates of a sample, without NaN and null of signals for which these are none.
+    """The updates of a sample, without NaN and null of the signals in `ignoring`.
 
     >>> updates_in({"x": None, "y": float("nan"), "z": 1.0}, frozenset({"x", "z"}))
     {'y': nan, 'z': 1.0}
@@ -84,7 +87,7 @@ def updates_in(values: Mapping[str, Value], ignoring: frozenset[str]) -> Mapping
 def merged(
     first: Sample, then: Mapping[str, Value], events: Container[str], conflicts: Conflicts
 ) -> dict[str, Value]:
-    """The values of a sample joined with those of a later one at its instant; see `coalesce`."""
+    """The values of a sample merged with later ones of the same instant; see `coalesce`."""
     made = dict(first.values)
     for name, value in then.items():
         if name not in made:
@@ -99,7 +102,7 @@ def merged(
 
 
 def either_occurred(first: Value, second: Value) -> Value:
-    """Kleene's or of two reports of one event at one instant; payloads are kept, all of them.
+    """The Kleene disjunction of two reports of an event at one instant; all payloads are kept.
 
     >>> either_occurred({"id": 1}, {"id": 2})
     ({'id': 1}, {'id': 2})
@@ -126,24 +129,24 @@ REMARK = (
 )
 """The remark on a name whose unknown values alternate with others."""
 
-_LEAST = 3  # stretches of unknown values; fewer are dropouts
+_LEAST = 3  # the fewest stretches of unknown values that look like a merge; fewer are dropouts
 
 _SCALARS = frozenset({bool, int, float, str})
-"""The types whose values are all known but NaN, which differs from itself."""
+"""The types whose values are all known except NaN, which differs from itself."""
 
-_LONGEST = 4  # known values of a stretch, on average, at most
+_LONGEST = 4  # the most known values per stretch of unknown ones that look like a merge, on average
 
 
 class Alternation(Struct):
-    """Known and unknown values of a name."""
+    """Counts of the known and unknown values of a name."""
 
     known: int = 0
     unknown: int = 0
-    stretches: int = 0
+    stretches: int = 0  # runs of unknown values without a known one between
     was_unknown: bool = False
 
     def add(self, *, is_unknown: bool) -> None:
-        """Take a value."""
+        """Count a value."""
         if is_unknown:
             self.unknown += 1
             self.stretches += not self.was_unknown
@@ -152,12 +155,12 @@ class Alternation(Struct):
         self.was_unknown = is_unknown
 
     def add_known(self, count: int) -> None:
-        """Take so many known values, one at least."""
+        """Count known values in a row, at least one."""
         self.known += count
         self.was_unknown = False
 
     def add_all(self, unknown: NDArray[np.bool_]) -> None:
-        """Take values in order: whether each is unknown; there is one."""
+        """Count values in order, at least one; bool[n], whether each is unknown."""
         count = int(unknown.sum())
         self.unknown += count
         self.known += len(unknown) - count
@@ -167,7 +170,10 @@ class Alternation(Struct):
 
     @property
     def is_merge(self) -> bool:
-        """Whether at least half is unknown, and known values seldom follow each other."""
+        """Whether the values look like a merge of topics.
+
+        They do if at least half are unknown and known values come in short runs.
+        """
         return (
             self.stretches >= _LEAST
             and self.known <= self.unknown
@@ -182,7 +188,7 @@ class Alternations:
         self.found: dict[str, Alternation] = defaultdict(Alternation)
 
     def note(self, values: Mapping[str, Value]) -> None:
-        """Look through a sample."""
+        """Count the values of a sample."""
         for name, value in values.items():
             if value.__class__ in _SCALARS and value == value:
                 self.found[name].add_known(1)
@@ -193,7 +199,7 @@ class Alternations:
                 self.found[name].add(is_unknown=is_unknown(value))
 
     def remarked(self, health: Iterable[Health]) -> tuple[Health, ...]:
-        """The findings, with a remark at unknown values that look like a merge's."""
+        """The findings, with `REMARK` on unknown values that look like a merge of topics."""
         return tuple(
             replace(one, remark=REMARK)
             if one.kind in (HealthKind.NAN, HealthKind.NONE)

@@ -1,4 +1,4 @@
-"""CSV text as columns, in blocks: what is odd is read by itself, and no more than that."""
+"""Reading of CSV text in batches of columns; the C reader leaves odd cells and rows to Python."""
 
 from __future__ import annotations
 
@@ -33,27 +33,27 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _ALL, _ROW = 0, 2
-"""The ways a call ends: with the text, or at an odd row; else its room is used up."""
+"""Why a call of the C reader ended: the text ended, or at an odd row; otherwise, room ran out."""
 
-_ODD = 4096  # cells of a call that are read one by one
+_ODD = 4096  # the most odd cells of a call, which Python reads one by one
 
 _LABELS = 2048
-"""Labels of a call that are told apart, at first: where there are more, of a later call more."""
+"""Room for distinct labels in the first call; later calls get more if it was too little."""
 
-_MOST_LABELS = 1 << 16  # from here on not
+_MOST_LABELS = 1 << 16  # room for this many labels or more does not grow
 
 
 def csv_batches(
     text: CsvText[Found], layout: Layout, ignoring: frozenset[str]
 ) -> Iterator[Batch | Iterator[Row]]:
-    """The rows of a text, in order.
+    """Yield the rows of a text in order: as batches, and odd rows one by one.
 
     Raises:
-        TraceError: with the line's number; the rows above it have been given out.
-        UnicodeDecodeError: it is no text.
+        TraceError: with the line's number; the rows before it are yielded first.
+        UnicodeDecodeError: the file is not UTF-8.
     """
     reader = _Reader(layout)
-    if not (text.is_whole or is_short_of_memory()):  # each thread reserves some
+    if not (text.is_whole or is_short_of_memory()):  # each thread reserves address space
         text.read_ahead(reader.read)
     try:
         while True:
@@ -73,24 +73,26 @@ def csv_batches(
 
 
 def _split(text: str, before: int) -> Iterator[tuple[int, list[str]]]:
-    """The rows of a text before which so many lines stand."""
+    """Split a text, which follows `before` lines, into rows."""
     return split_lines(bounded_lines(io.StringIO(text, newline=""), before), before)
 
 
 class Found(Struct, frozen=True):
-    """Rows of a text that were found together, and how far that came: see `csv.h`."""
+    """The result of one call of the C reader; see `csv.h`."""
 
-    batch: Batch | None  # with lines as if the text began with line 0; `None`: there is no row
-    fault: tuple[int, TraceError] | None  # what is wrong in the row behind it; its line, so counted
-    ended: int  # the way it ended
-    at: int  # the start of the rest
-    end: int  # the end of an odd row
-    lines: int  # those that were passed
-    labels: int  # those that were told apart
-    room: int  # the most labels that could be
+    batch: Batch | None  # line numbers are relative to the text; `None`: there is no row
+    fault: tuple[int, TraceError] | None  # line and error of the row after the batch, if wrong
+    ended: int  # why the call ended: `_ALL`, `_ROW` or another number
+    at: int  # the offset of the text not read
+    end: int  # the end of the odd row at `at`
+    lines: int  # the number of lines read
+    labels: int  # the number of distinct labels found
+    room: int  # the most distinct labels that had room
 
 
 class _Reader:
+    """Reads batches of rows, with the room that earlier calls have shown to be enough."""
+
     def __init__(self, layout: Layout) -> None:
         self.layout = layout
         no_update = layout.gaps.no_update
@@ -100,8 +102,11 @@ class _Reader:
         self._labels = max(_LABELS if has_labels else 0, 1 + len(layout.columns))
 
     def read(self, text: bytes, start: int = 0, *, is_ended: bool = False) -> Found:
-        """Find rows in a text from a place on, as far as one call can."""
-        # If rows are as long as those before; for more, there is a second call.
+        """Read rows of a text from offset `start` on, as many as one call can.
+
+        `is_ended`: whether the text ends with its last row. May run in several threads.
+        """
+        # Enough if rows are as long as earlier ones; otherwise a second call reads the rest.
         room = int(1.1 * (len(text) - start) / self._row_bytes) + 16
         columns = 1 + len(self.layout.columns)
         numbers = np.empty((columns, room), np.int64)
@@ -119,8 +124,8 @@ class _Reader:
             line = len(text[start : hole + 1].splitlines())
             rows = int(lines[:rows].searchsorted(line))
             fault = line, TraceError(NEVER_WRITTEN)
-        # Cells that C does not read (other notations, quotes) go the way of single rows, so there
-        # is one meaning.
+        # Cells that C does not read (unusual notations, quotes) are read by the functions for
+        # single rows, so that both ways give the same values.
         for row, place, *ends in odd[:odd_count].tolist():
             if row >= rows:
                 break
@@ -142,7 +147,7 @@ class _Reader:
         return Found(batch, fault, ended, at, end, passed, label_count, len(labels))
 
     def batch(self, text: CsvText[Found]) -> Generator[Batch, None, tuple[int, int]]:
-        """Take what can be read at once; gives how that ended, and where an odd row ends."""
+        """Yield the next batch, if any; return why the call ended, and the end of an odd row."""
         source, before = text.rest, text.line
         if text.start == len(source):
             return _ALL, 0
@@ -159,7 +164,7 @@ class _Reader:
             line, error = fault
             raise TraceError(f"line {before + line}: {error}")
         if batch is not None:
-            # The next call makes room for as many rows as it will find, with a tenth to spare.
+            # The next call makes room for rows of this average length, and a tenth more.
             self._row_bytes = (found.at - text.start) / len(batch.times)
         if found.labels == found.room < _MOST_LABELS:
             self._labels = 4 * found.labels
@@ -170,7 +175,7 @@ class _Reader:
     def _read_odd(
         self, text: str, place: int, row: int, numbers: NDArray[Any], says: NDArray[Any]
     ) -> None:
-        """Put down what a cell says that is read as readers of rows do."""
+        """Read an odd cell as single rows are read, and store it at its column and row."""
         if place == 0:
             numbers[0, row] = ticks_of_cell(text, self.layout.stamps)
             return
@@ -204,7 +209,7 @@ class _Reader:
             renumbered[list(own)] = [labels[label] for label in own.values()]
             places = renumbered[values]
             given = says == YES
-            if "" in labels:  # of spaces that are no ASCII
+            if "" in labels:  # a cell of non-ASCII spaces, which only Python strips
                 given &= places != labels[""]
             return cells_of_labels(places, given, tuple(labels) or ("",), gaps)
         made = values.view(np.float64) if column.kind is Kind.REAL else values
@@ -215,12 +220,12 @@ class _Reader:
                 says[says == UNKNOWN] = NO_UPDATE
             says[~kept(made, gaps) & (says == YES)] = NO_UPDATE
         cells = Cells(made, None if says.min() == says.max() == YES else says)
-        _ = cells.unknown  # kept, found by the thread that has just written the values
+        _ = cells.unknown  # cached: this thread has the values at hand
         return cells
 
 
 def _cell(text: bytes, start: int, end: int) -> str:
-    """The text of a cell; where its end is negative, quotes in it are doubled."""
+    """The text of a cell; a negative `end` (the complement) marks a cell with doubled quotes."""
     if end >= 0:
         return text[start:end].decode().strip()
     return text[start:~end].decode().replace('""', '"').strip()

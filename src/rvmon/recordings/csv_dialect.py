@@ -1,4 +1,4 @@
-"""CSV as other tools write it: found out by its first lines, and read as if it were plain."""
+"""CSV dialects of other tools: detected by the first lines, and converted to plain CSV."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import DEFAULT_COLUMNS, UNITS, stamps_of
 from rvmon.units import UnknownUnitError, parse_unit
 
-_LOOKED_AT = 1 << 13  # bytes that say how a text is written
-_MOST_ABOVE = 30  # lines above a header, at most
+_LOOKED_AT = 1 << 13  # bytes at the start that decide on the dialect
+_MOST_ABOVE = 30  # a header is among this many lines
 
 _SOME, _TOGETHER = 10, 4096
-"""Rows that have to agree; lines that are taken at once."""
+"""Rows after a header that are compared with it; lines that are converted at once."""
 
 _SEPARATORS: tuple[str, ...] = (",", ";", "\t", "|", "")
-"""The empty one stands for blanks, as many as there are."""
+"""The separators of cells; "" stands for blanks, any number of them."""
 
 _NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?|[+-]?(nan|inf)", re.I | re.ASCII)
 _COMMA = re.compile(r"([+-]?\d*),(\d+([eE][+-]?\d+)?)", re.ASCII)
@@ -44,17 +44,17 @@ _UNIT_IN_NAME = re.compile(r"(?P<name>.*?\S)\s*(\[(?P<unit>[^\[\]]*)\]|\((?P<sam
 
 _PARTS = {"ns": 1, "nsec": 1, "nsecs": 1, "nanosec": 1, "nanosecs": 1, "nanoseconds": 1}
 _PARTS |= {"us": 1_000, "usec": 1_000, "microseconds": 1_000, "ms": 1_000_000, "msec": 1_000_000}
-"""Nanoseconds by what the second of two columns of a stamp is called."""
+"""The unit of the second of two stamp columns, in nanoseconds, by the last word of its name."""
 
 
 class Dialect(Struct, frozen=True):
-    """The dialect of a text."""
+    """How a CSV text is written."""
 
-    separator: str = ","  # of cells; empty: blanks
+    separator: str = ","  # between cells; "": blanks
     above: int = 0  # lines above the header
-    is_commented: bool = False  # whether the header is the last of those that are comments
-    has_commas: bool = False  # whether numbers have a comma where plain ones have a point
-    encoding: str = "utf-8-sig"  # of the text
+    is_commented: bool = False  # whether the header is a comment, the last one above the rows
+    has_commas: bool = False  # whether numbers have decimal commas
+    encoding: str = "utf-8-sig"
 
 
 PLAIN = Dialect()
@@ -62,9 +62,10 @@ PLAIN = Dialect()
 
 @contextmanager
 def opened_as_csv(path: str | Path, stamps: Stamps | None) -> Iterator[tuple[BinaryIO, BinaryIO]]:
-    """The text of a file as plain CSV, and the file as it lies there; see `opened`.
+    """Open a file as plain CSV, together with the raw file; see `opened`.
 
-    Lines keep their numbers. A stamp that two columns give, `sec+nanosec`, becomes a column.
+    Lines keep their numbers. A stamp in two columns, `sec+nanosec`, or one with a pattern becomes
+    one plain column.
     """
     with opened(path) as (plain, raw):
         head = plain.peek(_LOOKED_AT)[:_LOOKED_AT]  # type: ignore[attr-defined]  # it is buffered
@@ -81,7 +82,7 @@ def opened_as_csv(path: str | Path, stamps: Stamps | None) -> Iterator[tuple[Bin
 
 
 class _Converted(io.RawIOBase):
-    """Lines as bytes."""
+    """A binary file of the given lines."""
 
     def __init__(self, lines: Iterator[str]) -> None:
         self._lines = lines
@@ -91,7 +92,7 @@ class _Converted(io.RawIOBase):
         return True
 
     def readinto(self, buffer: Any, /) -> int:
-        """Fill the buffer with what comes next; 0 at the end."""
+        """Fill the buffer with the next bytes; return their number, 0 at the end."""
         parts, size = [self._rest], len(self._rest)
         while size < len(buffer) and (line := next(self._lines, None)) is not None:
             parts.append(line.encode())
@@ -102,7 +103,7 @@ class _Converted(io.RawIOBase):
 
 
 def dialect_of(head: bytes) -> Dialect:
-    r"""How a text is written that begins so; what is like nothing is plain.
+    r"""The dialect of a text with this start; plain CSV if no table is recognised.
 
     >>> dialect_of(b"# by a tool\nt;v\n0;1,5\n")
     Dialect(separator=';', above=1, is_commented=False, has_commas=True, encoding='utf-8-sig')
@@ -112,7 +113,7 @@ def dialect_of(head: bytes) -> Dialect:
     text = head.decode(encoding, "replace")
     header = text.partition("\n")[0].splitlines()
     if header and any(cell.strip(' "') in DEFAULT_COLUMNS for cell in header[0].split(",")[:-1]):
-        # What is odd is told later.
+        # This is our own header; oddities below it are reported when they are read.
         return structs.replace(PLAIN, encoding=encoding) if is_wide else PLAIN
     lines = text.splitlines()
     if len(head) == _LOOKED_AT:
@@ -131,13 +132,13 @@ def dialect_of(head: bytes) -> Dialect:
 
 
 def _dialect_at(lines: Sequence[str], first: int, separator: str) -> Dialect | None:
-    """The dialect of a table whose header, or first row, is that line; `None`: there is none."""
+    """The dialect of a table whose header, or first row, is line `first`; `None`: there is none."""
     if not separator and any(other in lines[first] for other in _SEPARATORS if other):
-        return None  # blanks within cells
+        return None  # the blanks are inside cells
     header = _cells(lines[first], separator)
     behind = [line for line in lines[first + 1 :] if line.strip() and not _COMMENT.match(line)]
     rows = [_cells(line, separator) for line in behind[:_SOME]]
-    # Rows that are ragged are told where they are read.
+    # Half of the rows suffices: ragged rows are reported when they are read.
     alike = sum(len(row) == len(header) for row in rows)
     if len(header) < 2 or 2 * alike < len(rows):
         return None
@@ -171,10 +172,10 @@ def _cells(line: str, separator: str) -> list[str]:
 
 
 def _plain_lines(text: io.TextIOWrapper, dialect: Dialect, stamps: Stamps | None) -> Iterator[str]:
-    """The lines of a text as plain CSV has them; where comments stood they are empty.
+    """Yield the text converted to plain CSV; lines of comments become empty lines.
 
-    The last one has an end if it has one in the text. As long as no line needs a closer look,
-    many are taken at once.
+    The last line has an end if it has one in the text. Lines are converted many at a time as long
+    as none of them needs a closer look.
     """
     made: Callable[[list[str]], list[str]] | None = None
     written: list[str] = []
@@ -194,7 +195,7 @@ def _plain_lines(text: io.TextIOWrapper, dialect: Dialect, stamps: Stamps | None
                 raise TraceError(f"line {number}: {error}") from None
         writer.writerow(row)
         plain = written.pop()
-        # The header comes first, whatever stood above it; the others keep their numbers.
+        # The header is moved to the first line; all other lines keep their numbers.
         missing = number - lines - plain.count("\n") if lines else 0
         lines += missing + plain.count("\n")
         yield "\n" * missing + (plain if source.is_ended else plain[:-1])
@@ -210,12 +211,12 @@ def _plain_lines(text: io.TextIOWrapper, dialect: Dialect, stamps: Stamps | None
 
 
 class _Lines:
-    """Lines, of which some are looked at before they are taken."""
+    """An iterator of lines with lookahead."""
 
     def __init__(self, lines: Iterator[str]) -> None:
         self._lines = lines
         self._seen: deque[str] = deque()
-        self.is_ended = True  # whether the last one has its end that was taken by itself
+        self.is_ended = True  # whether the line taken last by `next` has an end
 
     def __iter__(self) -> Iterator[str]:
         return self
@@ -226,19 +227,19 @@ class _Lines:
         return line
 
     def ahead(self) -> Sequence[str]:
-        """Some of the next lines."""
+        """Up to `_TOGETHER` of the next lines, which are not taken yet."""
         self._seen += islice(self._lines, _TOGETHER - len(self._seen))
         return tuple(self._seen)
 
     def take(self) -> None:
-        """Take those that were looked at."""
+        """Take the lines that `ahead` gave."""
         self._seen.clear()
 
 
 def _as_plain(lines: Sequence[str], dialect: Dialect) -> str | None:
-    """Some lines as plain CSV has them; `None`: one has to be looked at by itself."""
+    """Convert some lines to plain CSV; `None`: they must be converted one by one."""
     separator, text = dialect.separator, "".join(lines)
-    # The signs are sought first, as the pattern takes long.
+    # Look for the signs first, as the pattern takes long.
     if dialect.above and any(sign in text for sign in "#/%") and _COMMENT.search(text):
         return None
     plain = None
@@ -248,7 +249,7 @@ def _as_plain(lines: Sequence[str], dialect: Dialect) -> str | None:
 
 
 def _rewritten(lines: Sequence[str], dialect: Dialect) -> str | None:
-    """The same where each line is a row, split and written again."""
+    """Convert lines by splitting and rewriting them; `None` if a row is not one line each."""
     split = csv.reader(lines, delimiter=dialect.separator, strict=True)
     written = io.StringIO()
     writer = csv.writer(written, lineterminator="\n")
@@ -272,7 +273,7 @@ def _with_point(cell: str) -> str:
 
 
 def _rows(lines: Iterator[str], dialect: Dialect) -> Iterator[tuple[int, list[str]]]:
-    """The rows with the numbers of their lines; what is no row is left out."""
+    """Yield the header and rows with their line numbers; comments and blank lines are skipped."""
     above = dialect.above
     for _ in range(above):
         next(lines, "")
@@ -284,7 +285,7 @@ def _rows(lines: Iterator[str], dialect: Dialect) -> Iterator[tuple[int, list[st
     else:
         rows = ((number, line.split()) for number, line in enumerate(lines, above + 1))
     for number, row in rows:
-        # What begins so is a comment where there were some above the header.
+        # Below the header, `#` starts a comment only in a file with lines above its header.
         is_comment = above and (number > above + 1) and row and _COMMENT.match(row[0])
         if not is_comment and any(row):
             yield number, row
@@ -293,16 +294,18 @@ def _rows(lines: Iterator[str], dialect: Dialect) -> Iterator[tuple[int, list[st
 def _stamp_maker(
     header: list[str], stamps: Stamps | None
 ) -> tuple[list[str], Callable[[list[str]], list[str]]]:
-    """A header, and what makes rows of it, with the stamp that several columns, or a pattern, give.
+    """A header with a column for the stamp that is made, and the function that converts a row.
 
-    What stands last in a row stands last there, too: it may be half of what it was.
+    The stamp is made of two columns or by a pattern; else header and rows stay as they are. If the
+    last cell of a row is a part of the stamp, the stamp is put last, because a file that was cut
+    off may have lost the end of this cell.
     """
     if stamps is None or not ("+" in stamps.column or stamps.pattern):
         return header, _unchanged
     parts = [stamps.column] if stamps.column in header else stamps.column.split("+")
     missing = [part for part in parts if part not in header]
     if missing or (not stamps.pattern and len(parts) != 2):
-        return header, _unchanged  # whoever looks for the column says that it is missing
+        return header, _unchanged  # `stamps_among` reports the missing column
     places = [header.index(part) for part in parts]
     is_last = len(header) - 1 in places
 
@@ -332,7 +335,7 @@ def _stamp(cells: Sequence[str], parts: Sequence[str], stamps: Stamps) -> str:
 
 
 def name_and_unit(column: str) -> tuple[str, str]:
-    """A name without the unit that stands behind it in brackets, and that.
+    """Split the name of a column into the bare name and the unit after it in brackets, or "".
 
     >>> name_and_unit("speed [m/s]"), name_and_unit("mode")
     (('speed', 'm/s'), ('mode', ''))
@@ -342,7 +345,13 @@ def name_and_unit(column: str) -> tuple[str, str]:
 
 
 def bare_names(header: Sequence[str], schema: Schema) -> tuple[list[str], Schema]:
-    """A header without the units that stand in it, where what is left is a name that is read."""
+    """Remove units from the names in a header where the bare name is declared, or is the time.
+
+    A unit of the time column becomes that of the schema's stamps.
+
+    Raises:
+        TraceError: the unit of a column is not that of its declaration.
+    """
     declared = {*schema.signals, *schema.events}
     declared |= {f"{name}.{field}" for name, own in schema.events.items() for field in own}
     aliases = schema.aliases
@@ -364,7 +373,7 @@ def bare_names(header: Sequence[str], schema: Schema) -> tuple[list[str], Schema
 
 
 def _expect_unit(column: str, name: str, unit: str, schema: Schema) -> None:
-    """See that the unit in the name of a column is the declared one, as far as both are units."""
+    """Check the unit in the name of a column against the declared one, if both are known units."""
     declared = schema.units.get(name, "")
     try:
         there, wanted = parse_unit(unit), parse_unit(declared)

@@ -1,4 +1,4 @@
-"""CSV: a header, a time column, a column per signal, event or payload field."""
+"""Reading of CSV by rows: a header, a time column, a column per signal, event or payload field."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from rvmon.trace.stamps import stamps_among, ticks_of_cell
 
 _KINDS = {Kind.BOOL: 0, Kind.INT: 1, Kind.REAL: 2, Kind.LABEL: 3}
 
-_STAMPS = {"iso": 4, "s": 14, "ms": 11, "us": 8, "ns": 5}  # by their unit, as `csv.h` numbers them
+_STAMPS = {"iso": 4, "s": 14, "ms": 11, "us": 8, "ns": 5}  # by unit, the number that `csv.h` uses
 
 
 class Column(Struct, frozen=True):
-    """One column that the spec reads: a signal, an event, or a payload field of an event."""
+    """A column that the spec reads: a signal, an event, or a payload field of an event."""
 
     index: int
     name: str
@@ -33,29 +33,29 @@ class Column(Struct, frozen=True):
 
     @property
     def called(self) -> str:
-        """The name in the header."""
+        """The declared name, `event.field` for a payload field."""
         return self.name if self.field is None else f"{self.name}.{self.field}"
 
 
 class Layout(Struct, frozen=True, dict=True):
-    """The columns of a header, and the way to read its rows."""
+    """The columns of a header, and how to read their cells."""
 
     header: tuple[str, ...]  # names of the columns
     time: int  # index of the time column
-    stamps: Stamps  # its kind of stamps
+    stamps: Stamps  # name and unit of the time column
     signals: tuple[Column, ...]  # columns of signals
     events: tuple[Column, ...]  # columns of events and of their payload fields
     ignored: tuple[str, ...]  # names of the columns that the spec does not declare
-    gaps: Gaps  # values that stand for no update
+    gaps: Gaps  # values that mean "no update"
 
     @cached_property
     def columns(self) -> tuple[Column, ...]:
-        """The columns that the spec reads, without the time."""
+        """The columns that the spec reads, without the time column."""
         return self.signals + self.events
 
     @property
     def names_read(self) -> list[str]:
-        """The names in the header of the time column and of those that the spec reads."""
+        """The header names of the time column, first, and of the columns that the spec reads."""
         return [
             self.header[place] for place in (self.time, *(column.index for column in self.columns))
         ]
@@ -67,7 +67,11 @@ class Layout(Struct, frozen=True, dict=True):
 
     @cached_property
     def numbers(self) -> tuple[bytes, bytes]:
-        """What `native_csv.read` takes: the column of each place in a row, the kind of each."""
+        """The arguments `slots` and `kinds` of `native_csv.read`, as packed int32.
+
+        By cell of a row, the index of its column (0 is the time, -1 is not read); by column, its
+        kind.
+        """
         places = {column.index: place for place, column in enumerate(self.columns, 1)}
         places[self.time] = 0
         slots = [places.get(index, -1) for index in range(len(self.header))]
@@ -76,7 +80,11 @@ class Layout(Struct, frozen=True, dict=True):
 
 
 def read_layout(header: list[str], schema: Schema) -> Layout:
-    """Match the header's names with the declared ones."""
+    """Match the names of a header with the declared names.
+
+    Raises:
+        TraceError: a name is in the header twice, or there is not one time column.
+    """
     seen: dict[str, int] = {}
     for index, name in enumerate(header):
         if name in seen:
@@ -90,7 +98,7 @@ def read_layout(header: list[str], schema: Schema) -> Layout:
 
 
 def layout_of(header: Sequence[str], stamps: Stamps, schema: Schema) -> Layout:
-    """Match names, none of which stands twice, with the declared ones, but for the stamps."""
+    """Match distinct column names, except that of the time column, with the declared names."""
     aliases = schema.aliases
     signals, events, ignored = [], [], []
     for index, column in enumerate(header):
@@ -124,7 +132,7 @@ NEVER_WRITTEN = (
 
 
 class CopiedLines:
-    """Lines as they are read, of which those of the last row can be asked for."""
+    """An iterator of lines that keeps a copy of those read, to get the text of the last row."""
 
     def __init__(self, lines: Iterable[str]) -> None:
         self._lines = lines
@@ -136,7 +144,7 @@ class CopiedLines:
             yield line
 
     def taken(self) -> str:
-        """The lines since this was asked last; the last one of all may lack its end, here too."""
+        """The text read since the previous call; the last line of the file may lack its end."""
         text = "".join(self._read)
         self._read.clear()
         return text
@@ -145,7 +153,13 @@ class CopiedLines:
 def split_lines(
     lines: Iterable[str], before: int = 0, separator: str = ","
 ) -> Iterator[tuple[int, list[str]]]:
-    """CSV text as rows with the number of the line that each ends on; blank ones are none."""
+    """Split CSV text into rows, each with the number of the line on which it ends.
+
+    Blank lines are skipped. `before`: the number of lines before the text.
+
+    Raises:
+        TraceError: with the line's number: a row is malformed or too long, or has zero bytes.
+    """
     began, taken = 1, 0
 
     def of_row() -> Iterator[str]:
@@ -182,7 +196,11 @@ def split_lines(
 
 
 def read_row(row: list[str], layout: Layout) -> tuple[int, dict[str, Value]]:
-    """Read one row: ticks and what it updates; an empty cell is no update."""
+    """Read a row: its ticks, and its values by name; an empty cell is no update.
+
+    Raises:
+        TraceError: a cell is missing or cannot be read; the message names the column.
+    """
     if len(row) != len(layout.header):
         raise TraceError(f"{len(row)} cells where the header has {len(layout.header)}")
     t = ticks_of_cell(row[layout.time], layout.stamps)
@@ -197,10 +215,10 @@ def read_row(row: list[str], layout: Layout) -> tuple[int, dict[str, Value]]:
 
 
 def row_values(cells: Iterable[tuple[Column, Any]], gaps: Gaps) -> dict[str, Value]:
-    """The values of a row: the one reading of rows, whatever format holds them.
+    """The values of a row by name: the one definition of what cells mean, in every format.
 
-    A signal is updated by its cell. An event with a payload cell occurs unless its own cell says
-    false; one without occurs where its own cell is true.
+    A signal is updated by its cell. An event with a payload cell occurs unless its own cell is
+    false. An event without payload cells occurs if its own cell is true.
 
     >>> from rvmon.trace.schema import NO_GAPS
     >>> columns = [Column(1, "pick", None, Kind.BOOL), Column(2, "pick", "id", Kind.INT)]
@@ -234,7 +252,11 @@ def _scalar(cell: str, column: Column) -> Scalar:
 def csv_samples(
     rows: Iterator[tuple[int, list[str]]], layout: Layout
 ) -> Iterator[tuple[int, int, Mapping[str, Value]]]:
-    """Line number, ticks and values of each row."""
+    """Yield the line number, ticks and values of each row.
+
+    Raises:
+        TraceError: with the line's number.
+    """
     for line, row in rows:
         try:
             t, values = read_row(row, layout)
@@ -246,10 +268,13 @@ def csv_samples(
 def unended(
     rows: Iterator[tuple[int, list[str]]], layout: Layout, ignoring: frozenset[str]
 ) -> Iterator[tuple[int, int, Mapping[str, Value], frozenset[str]]]:
-    """The same of a row that lacks the end of its line, and the names that nobody knows for it.
+    """Yield rows as `csv_samples` does, of a last line without an end, and the names made unknown.
 
-    Its last cell may be half of one, so that what it feeds is unknown; a truth value has no half.
-    Where that cell is the stamp, all is unknown.
+    The file may have been cut off in the last cell, so the name that this cell updates becomes
+    unknown, unless the cell is a whole truth value. If it is the stamp, all names become unknown.
+
+    Raises:
+        TraceError: with the line's number; also if unknown is no update for such a name.
     """
     for line, row in rows:
         try:

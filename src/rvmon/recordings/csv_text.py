@@ -1,4 +1,4 @@
-"""The text of a CSV in stretches of whole lines, the next ones read ahead; what of it was taken."""
+"""The text of a CSV file in stretches of whole lines, which other threads may read ahead."""
 
 from __future__ import annotations
 
@@ -27,20 +27,21 @@ else:
 
 _Found = TypeVar("_Found")
 
-_MARK = b"\xef\xbb\xbf"  # the byte order mark of UTF-8, with which some editors begin a text
+_MARK = b"\xef\xbb\xbf"  # the byte order mark of UTF-8, which some editors put before a text
 
 _SMALL = 1 << 15
-"""Bytes that are read first: the room for a block comes from the system and goes back to it, which
-for a small file takes as long as opening it."""
+"""Bytes that are read first. The memory for a whole block comes from the system and goes back to
+it, which for a small file takes as long as opening the file."""
 
 _END = re.compile(rb"\r\n|\n|\r(?!\Z)")
-"""The end of a line; a carriage return at the end of a block may be half of one."""
+"""The end of a line; a carriage return at the end of a block may be the first half of one."""
 
 
 class CsvText(Generic[_Found]):
-    """A text that is taken in stretches, and what of one is not taken yet.
+    """A text that is read in stretches, and the position up to which it was taken.
 
-    Mostly the end of a line is that of a row. Where it is not, what lies behind it is read again.
+    A stretch ends with a line, mostly also with a row. If not, its last row is read again together
+    with the next stretch.
     """
 
     def __init__(self, file: BinaryIO) -> None:
@@ -48,26 +49,34 @@ class CsvText(Generic[_Found]):
         first = file.read(size)
         if len(first) == size:
             first += file.read(places.BLOCK - size)
-        self.is_whole = len(first) < places.BLOCK  # all was read at once: nothing more is read
+        self.is_whole = len(first) < places.BLOCK  # the first read has reached the end of the file
         self._stretches = stretches(first, file)
         self._read: Generator[tuple[bytes, Callable[[], _Found] | None], None, None]
         self._read = ((stretch, None) for stretch in self._stretches)
-        self.rest, self.found = next(self._read)  # what was found in all of `rest`, if read ahead
-        self.start = len(_MARK) if self.rest.startswith(_MARK) else 0
-        self.line = 0
-        self.is_last = False
-        self.lost: frozenset[str] = frozenset()  # names: unknown as the last line has no end
+        # the current stretch; what another thread has found in the whole of it, if read ahead
+        self.rest, self.found = next(self._read)
+        self.start = len(_MARK) if self.rest.startswith(_MARK) else 0  # offset of text not taken
+        self.line = 0  # the number of lines taken
+        self.is_last = False  # whether there is no further stretch
+        self.lost: frozenset[str] = frozenset()  # names made unknown, as the last line has no end
 
     def read_ahead(self, read: Callable[[bytes], _Found]) -> None:
-        """Have further stretches read by other threads."""
+        """Have other threads read further stretches."""
         self._read = read_ahead(self._stretches, read)
 
     def close(self) -> None:
-        """Read no further."""
+        """Stop reading."""
         self._read.close()
 
     def read_on(self) -> bool:
-        """Go on to a further stretch; false: there was none before, either."""
+        """Continue with the next stretch, before which text not taken is kept.
+
+        Returns:
+            False if the call before this one has already found the end of the text.
+
+        Raises:
+            TraceError: a row is too long.
+        """
         if self.is_last:
             return False
         if len(self.rest) - self.start > places.LONGEST_LINE:
@@ -83,7 +92,7 @@ class CsvText(Generic[_Found]):
 
     @property
     def is_ended(self) -> bool:
-        """Whether it is read to its end, and its last line has one."""
+        """Whether this is the end of the text, and its last line has an end."""
         return self.is_last and self.rest[-1:] in (b"\n", b"\r", b"")
 
     def _refuse_long(self) -> None:
@@ -93,7 +102,7 @@ class CsvText(Generic[_Found]):
             deque(split_lines(lines, self.line), 0)
 
     def lines(self) -> Iterator[str]:
-        """The next lines, each taken as it is given out."""
+        """Yield the next lines; each is taken when it is yielded."""
         looked_at = self.start
         while self.start < len(self.rest) or not self.is_last:
             found = _END.search(self.rest, looked_at)
@@ -105,7 +114,7 @@ class CsvText(Generic[_Found]):
                 self.read_on()
 
     def cut(self, end: int) -> str:
-        """Take what lies before a place."""
+        """Take the text up to an offset."""
         taken = self.rest[self.start : end].decode()
         self.line += max(1, taken.count("\n") + taken.count("\r") - taken.count("\r\n"))
         self.start = end
@@ -114,18 +123,20 @@ class CsvText(Generic[_Found]):
 
 _Read = TypeVar("_Read")
 
-MOST_THREADS = 4  # the most reading threads; the consumer of their results is slower than these
+MOST_THREADS = 4  # the most reading threads; more would only wait for the consumer of the results
 
 
 def stretches(first: bytes, file: BinaryIO) -> Iterator[bytes]:
-    r"""A text in stretches that end with a line, but the last one; a line may be in several.
+    r"""Yield a text in stretches of whole lines; a line longer than a block comes in several.
+
+    The last stretch may lack the end of its line.
 
     Args:
-        first: its first `places.BLOCK` bytes; where there are fewer, `file` is not read.
-        file: gives what follows; each call as many bytes as are asked for, but at its end.
+        first: the first `places.BLOCK` bytes of the text; if there are fewer, `file` is not read.
+        file: the rest of the text; a short read means its end.
 
     Raises:
-        UnicodeDecodeError: it is no text.
+        UnicodeDecodeError: the text is not UTF-8.
 
     >>> import io
     >>> list(stretches(b"t,p\n0,1\n1,", io.BytesIO()))
@@ -134,7 +145,7 @@ def stretches(first: bytes, file: BinaryIO) -> Iterator[bytes]:
     decoder = getincrementaldecoder("utf-8")()
     tail, piece, is_split = b"", first, False
     while piece:
-        # Most texts are ASCII, which needs no decoder; a character may be split between two blocks.
+        # Most texts are ASCII, which needs no decoder. A character may be split between two blocks.
         if is_split or not piece.isascii():
             decoder.decode(piece)
             is_split = bool(decoder.getstate()[0])
@@ -153,11 +164,13 @@ def stretches(first: bytes, file: BinaryIO) -> Iterator[bytes]:
 def read_ahead(
     found: Iterator[bytes], read: Callable[[bytes], _Read]
 ) -> Generator[tuple[bytes, Callable[[], _Read] | None], None, None]:
-    """Stretches, each with what gives what another thread read in it; of one without end nothing.
+    """Yield stretches, each with a function that waits for the result of another thread's `read`.
+
+    A stretch that ends within a line is not read ahead, and has `None` instead of the function.
 
     Args:
-        found: are taken in order, some before they are asked for, by one thread at a time.
-        read: may run in several threads at once.
+        found: the stretches; they are taken in order, one thread at a time, some in advance.
+        read: reads a stretch; runs in several threads at once.
     """
     from concurrent.futures import ThreadPoolExecutor  # a small file needs none
 
@@ -167,7 +180,7 @@ def read_ahead(
     further = pool.submit(next, found, None)
     try:
         while True:
-            # What goes wrong as a stretch is taken waits for those before it.
+            # An error in taking a stretch is raised after the stretches before it were yielded.
             while not waiting or (len(waiting) <= threads and further.exception() is None):
                 stretch = further.result()
                 if stretch is None:

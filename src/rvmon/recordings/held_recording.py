@@ -1,4 +1,4 @@
-"""Recordings that are gone through several times once their verdicts are known."""
+"""A recording kept so that reports can read it again after judging."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ if TYPE_CHECKING:
     from rvmon.recordings.batch import Batch
 
 MOST_HELD = 1_000_000
-"""The most rows of columns that are held, some 33 bytes each; of more, all are read again."""
+"""Longer recordings are re-read instead of held in memory (a row of a batch takes 33 bytes)."""
 
-_SAMPLE = 10  # rows that take as much memory as a sample
+_SAMPLE = 10  # a sample takes as much memory as this many rows of a batch
 
 
 class HeldRecording(Sequence[Sample]):
-    """The samples of a recording; those of columns take a tenth of the memory of samples.
+    """The samples of a recording, held as batches where possible: a tenth of the memory.
 
     Args:
-        pieces: the recording, read once.
-        outages: the stretches that were lost.
-        again: reads it once more, where it is too long to be held; default: all of it is held.
+        pieces: the recording, which is read once.
+        outages: its outages.
+        again: reads the recording once more if it is too long to be held; `None`: it is held whole.
     """
 
     def __init__(
@@ -37,9 +37,8 @@ class HeldRecording(Sequence[Sample]):
         self._again = again
         self._held: list[Batch | Sample] = []
         self._rest: Iterator[Batch | Sample] | None = iter(pieces)
-        """What was not read yet; `None`: what comes behind those that are held must be read again,
-        or there is nothing."""
-        self._is_whole = False  # whether all is held
+        """Iterator over the pieces not read yet, or `None` once it was handed out."""
+        self._is_whole = False  # whether all pieces are held
         weight = 0
         while again is None or weight <= MOST_HELD:
             piece = next(self._rest, None)
@@ -50,47 +49,47 @@ class HeldRecording(Sequence[Sample]):
             weight += weight_of(piece)
 
     def pieces(self) -> Iterator[Batch | Sample]:
-        """The pieces of the recording, from its begin."""
+        """The pieces of the recording, from its start."""
         if self._is_whole or self._again is None:
             return iter(self._held)
         rest, self._rest = self._rest, None
         return iter(self._again()) if rest is None else chain(self._held, rest)
 
     def __bool__(self) -> bool:
-        """Whether there is any."""
+        """Whether the recording has a row."""
         return any(map(rows_of, self._held))
 
     def __len__(self) -> int:
-        """The number of rows, of which several may belong to one sample."""
+        """The number of rows, several of which may make up one sample."""
         return sum(map(rows_of, self.pieces()))
 
     def __iter__(self) -> Iterator[Sample]:
-        """The samples."""
+        """Yield the samples."""
         return chain.from_iterable(map(samples_of, self.pieces()))
 
     def __getitem__(self, place: Any) -> Any:
-        """A sample; all are gone through, but for the first."""
+        """A sample, or a slice; except for the first sample, this reads the whole recording."""
         if place == 0:
             return next(chain.from_iterable(map(samples_of, self._held)))
         return list(self)[place]
 
     def is_longer_than(self, rows: int) -> bool:
-        """Whether it has more rows than some, which are few enough to be held."""
+        """Whether the recording has more than `rows` rows, or is too long to be held."""
         return not self._is_whole or sum(map(rows_of, self._held)) > rows
 
 
 def held(samples: Iterable[Batch | Sample]) -> HeldRecording:
-    """Samples as a held recording, or the one that they are."""
+    """Hold samples in memory; a held recording is returned as it is."""
     return samples if isinstance(samples, HeldRecording) else HeldRecording(samples)
 
 
 def weight_of(piece: Batch | Sample) -> int:
-    """The number of rows of columns that take as much memory as a piece."""
+    """The memory that a piece takes, in rows of a batch."""
     return _SAMPLE if isinstance(piece, Sample) else len(piece.times)
 
 
 def rows_of(piece: Batch | Sample) -> int:
-    """The number of rows of a piece."""
+    """The number of rows of a piece; a sample counts as one."""
     return 1 if isinstance(piece, Sample) else len(piece.times)
 
 
@@ -100,11 +99,11 @@ def samples_of(piece: Batch | Sample) -> Iterator[Sample]:
 
 
 class UnknownWhileLost:
-    """Makes names unknown while they are lost, piece by piece of a recording.
+    """Makes names unknown during outages, piece by piece of a recording.
 
     Args:
-        outages: the stretches that were lost.
-        names: those that an outage of all names means.
+        outages: the outages of the recording.
+        names: the names concerned by an outage of all names.
     """
 
     def __init__(self, outages: Iterable[Outage], names: Set[str]) -> None:
@@ -114,7 +113,10 @@ class UnknownWhileLost:
         self._lasting: list[tuple[int, Set[str]]] = []
 
     def parts(self, piece: Batch | Sample) -> Iterator[Batch | Sample]:
-        """The parts of the next piece, and samples in which what is lost becomes unknown."""
+        """Yield the next piece in parts without lost names; a sample tells where names become lost.
+
+        Pieces must be passed in order.
+        """
         for part in _parts(piece, self._turns):
             first = part.t if isinstance(part, Sample) else int(part.times[0])
             while self._waiting and self._waiting[0].since <= first:
@@ -122,14 +124,14 @@ class UnknownWhileLost:
                 lost_names = self._names if loss.names is None else loss.names
                 self._lasting.append((loss.until, lost_names))
                 yield Sample(loss.since, dict.fromkeys(lost_names))
-            # What comes at the last instant counts behind it.
+            # An update at the last instant of an outage counts, as if it came after the outage.
             self._lasting = [(until, names) for until, names in self._lasting if first < until]
             lost = {name for _, names in self._lasting for name in names}
             yield part.without(lost) if lost else part
 
 
 def _parts(piece: Batch | Sample, turns: Sequence[int]) -> Iterator[Batch | Sample]:
-    """A piece, of which rows are cut apart where something is lost, or found."""
+    """Yield a piece; a batch is cut where an outage starts or ends (`turns`, ticks)."""
     if isinstance(piece, Sample) or not turns:
         yield piece
         return

@@ -1,4 +1,4 @@
-"""Several files of one log, as a logger leaves them that writes one for each topic."""
+"""Recordings of several files, as written by loggers that make a file for each topic."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from rvmon.trace.schema import BY_NAME, Schema
 if TYPE_CHECKING:
     from rvmon.recordings.batch import Batch
 
-_FEW = 64  # fewer rows are joined one by one
+_FEW = 64  # fewer rows than this are joined one by one
 
 
 class File(Recording, Protocol):
-    """One of the files, or tables."""
+    """One of the files or tables of a joined recording."""
 
     path: str
     ignored: Counter[str]
@@ -32,28 +32,28 @@ class File(Recording, Protocol):
 
     @property
     def unread(self) -> Sequence[str]:
-        """The columns that nothing is declared for."""
+        """The columns for which no name is declared."""
 
     @property
     def outages(self) -> Sequence[Outage]:
         """The outages of the file."""
 
     def parts(self) -> Iterator[Batch | Sample]:
-        """The file in order, as columns where it has such; may be empty."""
+        """Yield the file in order, as batches of columns where possible; may be empty."""
 
     def doubts(self) -> list[Health]:
-        """The doubts about the file."""
+        """The doubts about the stamps and the end of the file."""
 
 
 class Joined:
-    """Files that are one recording: their samples in order of time, each with the names it has.
+    """A recording of several files: their samples merged by time, each with its own file's names.
 
-    A name is that of a column, or `FILE.COLUMN`, with the file's name without what all of them
-    begin with: `status.armed` is the column `armed` of `log_17_status_0.csv`. A name lasts as long
-    as its own file says: nothing is carried into rows of others, and nothing is resampled.
+    A name is that of a column, or `FILE.COLUMN`. `FILE` is the file's name without the prefix that
+    all files share: `status.armed` is the column `armed` of `log_17_status_0.csv`. Only rows of its
+    own file update a name: no value is copied into rows of other files, nothing is resampled.
     """
 
-    count = 0  # nobody has counted the rows
+    count = 0  # the number of rows is not known
 
     def __init__(self, files: Sequence[File], rows: Rows) -> None:
         self._files = files
@@ -67,31 +67,38 @@ class Joined:
                         f"`FILE.{name}` of the file that is meant, or leave the column out"
                     )
                 found[name] = file.path
-        # declared names that have a file; `None`: any may come
+        # declared names that have a file; `None`: any may occur
         is_known = all(file.names is not None for file in files)
         self.names: frozenset[str] | None = frozenset(found) if is_known else None
-        # the last instant, ticks, if all of them say one
+        # the last instant, ticks; `None` unless every file gives its end
         ends = [file.end for file in files if file.end is not None]
         self.end = max(ends) if len(ends) == len(files) else None
-        # the columns that nothing is declared for
+        # the columns for which no name is declared
         self.unread = [column for file in files for column in file.unread]
         self.ignored = sum((file.ignored for file in files), Counter[str]())
         self.outages = sorted(_outages_of(files), key=lambda outage: outage.since)
 
     def blocks(self) -> Iterator[Batch | list[Row]]:
-        """The rows in order of time: as columns what lies between the ends of batches of files."""
+        """Yield the rows in order of time.
+
+        Rows between the ends of two batches come as a batch if there are enough of them; the rows
+        at the instant at which a batch ends come one by one.
+
+        Raises:
+            TraceError: a file cannot be read; the message names the file.
+        """
         from rvmon.recordings.batch import outer_join
 
         number = 1
         heads = [head for head in map(_Head, self._files) if head.is_there]
         while heads:
-            # Up to here all files are read: rows of later instants may still come from the file
-            # whose part ends first.
+            # All files have been read up to `until`. The file whose part ends first may still give
+            # rows of that instant and later ones.
             until = min(head.instant(-1) for head in heads)
             before = [own for head in heads if (own := head.take_before(until)) is not None]
             count = sum(len(batch.times) for batch in before)
             joined = outer_join(before, number) if count >= _FEW else None
-            # Each file has noted itself where two values of an instant differ.
+            # Conflicting values of one instant need no note here: each file has noted its own.
             apart = [batch.samples() for batch in before] if joined is None else []
             rows = [*merge(*apart, key=attrgetter("t"))]
             rows += [sample for head in heads for sample in head.take_at(until)]
@@ -103,21 +110,21 @@ class Joined:
             heads = [head for head in heads if head.is_there]
 
     def pieces(self) -> Iterator[Batch | Sample]:
-        """The recording in order; errors are those of `blocks`."""
+        """Yield the recording in order, as batches and samples; errors as in `blocks`."""
         return self.rows.pieces(self.blocks())
 
     def __iter__(self) -> Iterator[Sample]:
-        """Samples in order of time, equal stamps merged; errors are those of `blocks`."""
+        """Yield samples in order of time, with equal stamps merged; errors as in `blocks`."""
         for piece in self.pieces():
             yield from (piece,) if isinstance(piece, Sample) else piece.samples()
 
     def stamp_doubts(self) -> list[Health]:
-        """The doubts about the stamps of each file."""
+        """The doubts about each file: its rows, its stamps and its end."""
         return [doubt for file in self._files for doubt in (*file.rows.doubts(), *file.doubts())]
 
 
 class _Head:
-    """The reading position in a file: a batch of which some rows are taken, or a sample."""
+    """The reading position in a file: a sample, or the rows of a batch not taken yet."""
 
     def __init__(self, file: File) -> None:
         self._path, self._parts = file.path, file.parts()
@@ -130,13 +137,13 @@ class _Head:
         self.is_there = self._part is not None
 
     def instant(self, place: int) -> int:
-        """The first instant that is at hand (`place` 0), or the last one (-1), ticks."""
+        """The first (`place` 0) or last (-1) instant of the current part, ticks."""
         part = self._part
         assert part is not None, "it is there"
         return part.t if isinstance(part, Sample) else int(part.times[place])
 
     def take_before(self, until: int) -> Batch | None:
-        """The rows of a batch before an instant, if there are any."""
+        """Take the rows before an instant (ticks) off a batch; `None` if there are none."""
         part = self._part
         if part is None or isinstance(part, Sample):
             return None
@@ -145,7 +152,7 @@ class _Head:
         return part.cut(0, count) if count else None
 
     def take_at(self, until: int) -> Iterator[Sample]:
-        """The samples at an instant."""
+        """Take the samples at an instant (ticks), reading further parts as needed."""
         while self.is_there and self.instant(0) == until:
             part = self._part
             if isinstance(part, Sample):
@@ -160,7 +167,7 @@ class _Head:
 
 
 def topics_of(paths: Sequence[str]) -> list[tuple[str, str]]:
-    """By file its name, and that without the common beginning and the number of an instance.
+    """By file, its name, and the name without the common prefix and the instance number `_0`.
 
     >>> topics_of(["log_17_odom_0.csv", "log_17_status_0.csv"])
     [('log_17_odom_0', 'odom'), ('log_17_status_0', 'status')]
@@ -172,7 +179,7 @@ def topics_of(paths: Sequence[str]) -> list[tuple[str, str]]:
 
 
 def schemas_of(paths: Sequence[str], of_messages: Sequence[bool], schema: Schema) -> list[Schema]:
-    """The schema of each file: a name that begins with the file's own is that of its column."""
+    """The schema of each file, in which names `FILE.COLUMN` of that file read its column."""
     return [
         replace(schema, stamps=None) if is_of_messages else _schema_of(topics, schema)
         for is_of_messages, topics in zip(of_messages, topics_of(paths), strict=True)
@@ -194,7 +201,7 @@ def _schema_of(topics: tuple[str, str], schema: Schema) -> Schema:
 
 
 def _outages_of(parts: Sequence[File]) -> Iterator[Outage]:
-    """Outages of files as those of the names that they feed."""
+    """The outages of all files; an outage of a whole file concerns the names of that file only."""
     for part in parts:
         for outage in part.outages:
             yield replace(outage, names=part.names) if outage.names is None else outage

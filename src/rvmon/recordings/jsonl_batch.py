@@ -1,4 +1,4 @@
-"""JSON lines in pieces: rows as columns where a piece is plain, else one by one."""
+"""Reading of JSON lines in pieces: as batches of columns where a piece is plain, else by rows."""
 
 from __future__ import annotations
 
@@ -36,7 +36,10 @@ _MARK = b"\xef\xbb\xbf"
 def jsonl_batches(
     file: BinaryIO, schema: Schema, ignored: Counter[str], found_stamps: Callable[[Stamps], None]
 ) -> Iterator[Batch | Iterator[Row]]:
-    """The rows of a text, in order; `found_stamps` is told what its stamps are."""
+    """Yield the rows of a text in order: as batches where possible, else one by one.
+
+    `ignored` counts undeclared names; `found_stamps` is called with the default stamps of the text.
+    """
     line = 0
     for text in places.whole_pieces(file, places.BLOCK):
         if not line and schema.stamps is None:
@@ -53,7 +56,11 @@ def jsonl_batches(
 
 
 def _batch(text: bytes, schema: Schema, ignored: Counter[str]) -> Batch:
-    """A piece as columns; `NotPlainError`: it has to be read line by line."""
+    """Convert a piece to a batch.
+
+    Raises:
+        NotPlainError: the piece must be read line by line.
+    """
     lines = text.count(b"\n") + (not text.endswith(b"\n"))
     if schema.stamps is not None or schema.columns or b"\r" in text:
         raise NotPlainError("stamps or names have another form")
@@ -67,7 +74,7 @@ def _batch(text: bytes, schema: Schema, ignored: Counter[str]) -> Batch:
     stamps = [name for name in DEFAULT_COLUMNS if name in columns]
     if len(rows) != lines or len(stamps) != 1 or "events" in others:
         raise NotPlainError("its lines have not one stamp")
-    if names_in(text) != count:  # of equal names the last one is decoded
+    if names_in(text) != count:  # the decoder keeps only the last of equal names
         raise NotPlainError("a name may stand twice in a line")
     batch = Batch(
         instants_of(columns.pop(stamps[0]), stamps_of(stamps[0])),
@@ -94,10 +101,20 @@ def _collect(
     columns: dict[str, list[Any]],
     others: Counter[str],
 ) -> int:
-    """Put the values of stamps and declared names into columns, and count those of other names.
+    """Collect the values of stamps and declared names in `columns`, and count undeclared names.
 
-    `objects` has one of each line, empty where it has none, `columns` the value of each, `UNSET`
-    where there is none. Gives how many names stand in the objects, and in those within them.
+    Args:
+        objects: an object per line, empty where the line has none.
+        prefix: the path of the objects in their lines.
+        schema: the declared names.
+        columns: by name, a value per line, `UNSET` where the line has none.
+        others: counts by undeclared name.
+
+    Returns:
+        The number of names in the objects, including nested ones.
+
+    Raises:
+        NotPlainError: two keys stand for one name, or a name has objects and other values.
     """
     count = sum(map(len, objects))
     for key in dict.fromkeys(chain.from_iterable(objects)):
@@ -122,13 +139,17 @@ def _collect(
 
 
 def instants_of(stamps: list[Any], unit: Stamps) -> NDArray[np.int64]:
-    """The ticks of some stamps; `NotPlainError`: they are no plain numbers, or out of range."""
+    """Convert stamps to ticks, int64[n].
+
+    Raises:
+        NotPlainError: a stamp is no plain number, or out of range.
+    """
     found = np.array(stamps if set(map(type, stamps)) <= {int, float} else [])
     if len(found) != len(stamps) or found.dtype.kind not in ("i" if unit.unit == "ns" else "fi"):
         raise NotPlainError("its stamps are no plain numbers")
     try:
         return ticks_of_column(found, unit)
-    except TraceError:  # whoever reads lines says in which it is
+    except TraceError:  # reading line by line reports the line
         raise NotPlainError("some instant is out of range") from None
 
 

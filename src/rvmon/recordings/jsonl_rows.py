@@ -1,4 +1,4 @@
-"""JSON lines: an object per sample, nested names joined with dots."""
+"""Reading of JSON lines line by line: an object per sample, nested names joined with dots."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from rvmon.trace.time import TIME_LIMIT
 
 Line = TypeVar("Line", str, bytes)
 
-MOST_NAMES = 1_000  # the most names that are counted apart
-MORE = "… and more"  # the entry that counts all other names
+MOST_NAMES = 1_000  # the most undeclared names that are counted separately
+MORE = "… and more"  # the entry that counts all further names
 
 TOO_DEEP = "it is nested too deeply"
 
@@ -34,15 +34,22 @@ _HALF_PAIR = re.compile(r"\\u[dD][89abAB]..(?!\\u[dD][c-fC-F])")
 
 
 _APART = re.compile(r'"\s+:')
-_APART_IN_BYTES = re.compile(rb'"\s+:')  # a quote that may end a name, with blanks before the colon
+_APART_IN_BYTES = re.compile(rb'"\s+:')  # a quote that may end a name, and blanks before the colon
 
 
 def jsonl_samples(
     lines: Iterable[str], schema: Schema, ignored: Counter[str], before: int = 0
 ) -> Iterator[tuple[int, int, Mapping[str, Value]]]:
-    """Line number, ticks and values of each line but blank ones; undeclared names are counted.
+    """Yield the line number, ticks and values of each line that is not blank.
 
-    `before`: the lines that stand before them.
+    Args:
+        lines: the lines, of a file that may start with a byte order mark.
+        schema: the declared names.
+        ignored: counts undeclared names.
+        before: the number of lines before `lines`.
+
+    Raises:
+        TraceError: with the line's number.
     """
     for name in schema.columns:
         if name not in schema.signals and name.rpartition(".")[0] in schema.events:
@@ -69,12 +76,14 @@ def jsonl_samples(
 
 
 def decoded(line: Line, decode: Callable[[Line], Any]) -> Any:
-    """The value of a line; JSON has no NaN and no infinity, but many that write JSON do.
+    """The value of a line of JSON.
+
+    NaN and Infinity are accepted, which JSON does not have but many programs write.
 
     Raises:
-        msgspec.DecodeError: it is no JSON.
-        TraceError: a number is too large, a name stands twice in an object, or there is half of a
-            surrogate pair.
+        msgspec.DecodeError: the line is no JSON.
+        TraceError: a number is too large, a name is in an object twice, or an escaped surrogate
+            pair lacks its second half.
     """
     try:
         value = decode(line)
@@ -89,16 +98,19 @@ def decoded(line: Line, decode: Callable[[Line], Any]) -> Any:
                 return json.loads(line, parse_float=double_of, object_pairs_hook=_once_each)
             except TraceError:
                 raise
-            except ValueError:  # what was wrong with it first is reported
+            except ValueError:  # report the first error, below
                 pass
         raise
-    if names_in(line) != count_of_names(value):  # what decodes it takes the last of equal names
+    if names_in(line) != count_of_names(value):  # the decoder keeps only the last of equal names
         json.loads(line, object_pairs_hook=_once_each)
     return value
 
 
 def names_in(text: str | bytes) -> int:
-    """The number of names in the objects of a text; another number if the text is not plain.
+    """The number of names in the objects of a JSON text, found fast.
+
+    In a text that is not plain (blanks before a colon, `":` within a text) the number may be wrong;
+    comparing it with `count_of_names` then only makes the caller look closer.
 
     >>> names_in('{"a": "b:c", "a": {"d":1}}'), names_in('{"a" : 1}')
     (3, -1)
@@ -132,10 +144,10 @@ def _once_each(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 def read_object(
     decoded: object, schema: Schema, ignored: Counter[str]
 ) -> tuple[int, dict[str, Value]]:
-    """Read one decoded line: ticks and what it updates.
+    """Read a decoded line: its ticks, and its values by name; undeclared names are counted.
 
     Raises:
-        TraceError: no time, or a value of the wrong kind; the message names the field.
+        TraceError: there is no time, or a value is of the wrong kind; the message names the field.
 
     >>> schema = Schema({"hand.distance": Kind.REAL}, {"pick": {"id": Kind.INT}, "go": {}})
     >>> line = {"t": 1.5, "hand": {"distance": 1}, "events": ["go"], "pick": {"id": 3}}
@@ -169,12 +181,12 @@ def read_object(
 
 
 def _written(value: object) -> str:
-    """A decoded value as it stands in the line, a text with its quotes, shortened."""
+    """A decoded value as it is written in JSON, shortened for a message."""
     return shorten(msgspec.json.encode(value).decode())
 
 
 def _ticks(fields: dict[str, Any], schema: Schema) -> int:
-    """The instant of a line; what says it is taken out of the fields."""
+    """The instant of a line (ticks); its stamp is removed from the fields."""
     if schema.stamps is not None:
         stamps = schema.stamps
         stamp = _taken(fields, stamps.column)
@@ -195,7 +207,7 @@ def _ticks(fields: dict[str, Any], schema: Schema) -> int:
 
 
 def _taken(fields: dict[str, Any], path: str) -> Any:
-    """A value out of nested fields whose names are joined with dots."""
+    """Remove the value at a path of dotted names from nested fields; `_MISSING`: there is none."""
     if path in fields:
         return fields.pop(path)
     head, dot, rest = path.partition(".")
@@ -263,7 +275,7 @@ def _scalar(value: object, kind: Kind, name: str) -> Scalar:
 
 
 def bound(ignored: Counter[str]) -> None:
-    """Count all names but the first `MOST_NAMES` together.
+    """Merge the counts of all names after the first `MOST_NAMES` into `MORE`.
 
     >>> seen = Counter({f"name{number}": 1 for number in range(MOST_NAMES + 5)})
     >>> bound(seen)

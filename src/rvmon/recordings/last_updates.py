@@ -1,4 +1,4 @@
-"""The last update of each signal, as a recording goes by."""
+"""The last update of each signal, tracked while a recording is read."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Update = tuple[int, Scalar]  # an instant in ticks, and the value; `None`: unkno
 
 
 class LastUpdates:
-    """Keeps the last update of some signals; of those in `ignoring` unknown is none."""
+    """Keeps the last update of some signals; of those in `ignoring`, unknown is no update."""
 
     def __init__(self, names: Set[str], ignoring: frozenset[str]) -> None:
         self._names = names
@@ -26,7 +26,7 @@ class LastUpdates:
     def add(self, pieces: Sequence[Batch | Sample]) -> None:
         """Take the next pieces of the recording."""
         wanted = set(self._names)
-        for piece in reversed(pieces):  # what stands last is mostly found at once
+        for piece in reversed(pieces):  # the last piece mostly has an update of every signal
             for name, update in self.last_in(piece, wanted):
                 self._found[name] = update
                 wanted.discard(name)
@@ -34,7 +34,10 @@ class LastUpdates:
                 return
 
     def until(self, instant: int, piece: Batch | Sample | None) -> Mapping[str, Update]:
-        """By name the last update up to an instant (ticks), which may lie in the next piece."""
+        """By name, the last update up to an instant (ticks), which may lie in the next piece.
+
+        `piece`: the next piece, which was not added yet; `None` at the end of the recording.
+        """
         if piece is None or isinstance(piece, Sample):
             is_past = piece is not None and piece.t <= instant
             own = self.last_in(piece, self._names) if piece is not None and is_past else ()
@@ -43,7 +46,7 @@ class LastUpdates:
         return {**self._found, **dict(own)}
 
     def last_in(self, piece: Batch | Sample, names: Set[str]) -> Iterator[tuple[str, Update]]:
-        """By name the last update in a piece."""
+        """Yield the name and last update in a piece of each of some signals."""
         if isinstance(piece, Sample):
             values = updates_in(piece.values, self._ignoring)
             for name in names & values.keys():
@@ -57,19 +60,19 @@ class LastUpdates:
 
 
 def known(value: Value) -> Scalar:
-    """The value of a signal; `None` if it is unknown."""
+    """The value of a signal as a scalar; `None` for NaN, or whatever is no scalar."""
     if isinstance(value, float) and value != value:  # NaN
         return None
     return value if isinstance(value, bool | int | float | str) else None
 
 
 class ValuesAt:
-    """The values of signals at instants, as a recording goes by.
+    """The values of signals at requested instants, found while a recording is read.
 
     Args:
-        names: of the signals that may be asked for.
+        names: the signals that may be requested.
         ignoring: see `LastUpdates`.
-        stale_after: by name from when on a value counts as unknown, ticks behind its update.
+        stale_after: by name, the age (ticks) above which a value is unknown; `None`: never.
     """
 
     def __init__(
@@ -83,15 +86,15 @@ class ValuesAt:
         self._since: int | None = None
 
     def ask(self, instant: int, names: Set[str]) -> None:
-        """Ask for signals at an instant (ticks); in vain, if that lies in what was taken."""
+        """Request signals at an instant (ticks); ignored if later pieces were taken already."""
         if self._since is None or instant >= self._since:
             self._asked[instant] = self._asked.get(instant, set()) | names
             self._next = min(self._next, instant)
 
     def take(self, pieces: Sequence[Batch | Sample]) -> None:
-        """Take the next pieces of the recording, of which there is one at least."""
+        """Take the next pieces of the recording, at least one."""
         last, place = last_of(pieces[-1]), 0
-        while self._next < last:  # at the last instant more may come
+        while self._next < last:  # the last instant may have further updates in the next pieces
             passed = place
             while last_of(pieces[place]) <= self._next:
                 place += 1
@@ -101,16 +104,16 @@ class ValuesAt:
         self._since = last
 
     def finish(self) -> None:
-        """Say that nothing follows."""
+        """Settle all open requests at the end of the recording."""
         while self._asked:
             self._settle(None)
 
     def _settle(self, piece: Batch | Sample | None) -> None:
-        """Find what is asked for at the next instant, which may lie in a piece."""
+        """Find the values requested at the next instant, which may lie in `piece`."""
         instant = self._next
         updates = self._updates.until(instant, piece)
         for name in self._asked.pop(instant):
-            # By the last update, not the last change: a value that is said again is not stale.
+            # By the last update, not the last change: a repeated value is not stale.
             t, value = updates.get(name, (instant, None))
             limit = self._stale_after.get(name)
             is_stale = limit is not None and instant > t + limit

@@ -1,4 +1,4 @@
-"""Parquet: a time column, a column per signal, event or payload field, as in CSV.
+"""Reading of Parquet files: a time column, and a column per signal, event or payload field.
 
 Needs pyarrow, the extra `arrow`.
 """
@@ -24,35 +24,41 @@ from rvmon.trace.schema import Schema
 if TYPE_CHECKING:
     from rvmon.recordings.batch import Batch
 
-ROWS = 1 << 16  # rows that are in memory at a time
+ROWS = 1 << 16  # the most rows that are in memory at a time
 
 
 def parquet_file(path: str | Path) -> Any:
-    """The open file, as pyarrow has it."""
+    """Open a file as a `pyarrow.parquet.ParquetFile`.
+
+    Raises:
+        TraceError: the file is no Parquet file, or damaged.
+        RvmonError: pyarrow is not installed.
+        OSError: the file cannot be opened.
+    """
     with needed("Parquet", "pyarrow"):
         import pyarrow
         import pyarrow.parquet
     try:
         return pyarrow.parquet.ParquetFile(path, page_checksum_verification=True)
-    except MemoryError:  # of Arrow, too: the file may be as it should be
+    except MemoryError:  # Arrow's is an `ArrowException`, too, but says nothing about the file
         raise
     except pyarrow.ArrowException as error:
         raise TraceError(f"not a Parquet file ({first_line(error)})") from None
     except OSError as error:
-        if error.errno is not None:  # the system says why it cannot be opened
+        if error.errno is not None:  # an error of the system, not of Arrow
             raise
         raise _damage(error) from None
 
 
 def parquet_cells(path: str | Path) -> Iterator[Mapping[str, list[Any]]]:
-    """The cells of all columns by name, rows by rows."""
+    """Yield the cells of all columns by name, at most `ROWS` rows at a time."""
     names = list(parquet_file(path).schema_arrow.names)
     for arrays in parquet_batches(path, names):
         yield dict(zip(names, map(arrow_cells, arrays), strict=True))
 
 
 def parquet_batches(path: str | Path, names: list[str]) -> Iterator[list[Any]]:
-    """These columns, rows by rows."""
+    """Yield the arrays of these columns, at most `ROWS` rows at a time."""
     file = parquet_file(path)
     import pyarrow
 
@@ -71,7 +77,7 @@ def parquet_batches(path: str | Path, names: list[str]) -> Iterator[list[Any]]:
 
 
 def _damage(error: Exception) -> TraceError:
-    if "launch worker thread" in str(error):  # its stack needs memory, too
+    if "launch worker thread" in str(error):  # there is no memory for the thread's stack
         raise MemoryError
     return TraceError(f"damaged Parquet file ({first_line(error)}): write or copy it again")
 
@@ -85,7 +91,7 @@ def parquet_layout(path: str | Path, schema: Schema) -> Layout:
 
 
 def numbers_of_durations(column: Any) -> Any:
-    """A column of stamps; durations in it as nanoseconds, which `parquet_layout` takes them for."""
+    """A column of stamps; durations become nanoseconds, the unit `parquet_layout` gives them."""
     import pyarrow
 
     if not is_of_durations(column):
@@ -94,7 +100,7 @@ def numbers_of_durations(column: Any) -> Any:
 
 
 def parquet_batches_of(path: str | Path, schema: Schema) -> Iterator[Batch | Iterator[Row]]:
-    """The rows of a file in order: as columns, if they hold what is declared, else one by one."""
+    """Yield the rows of a file in order: as a batch if all its cells fit, else one by one."""
     layout = parquet_layout(path, schema)
     row = 1
     for given, *others in parquet_batches(path, layout.names_read):

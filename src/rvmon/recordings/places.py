@@ -1,4 +1,4 @@
-"""The places of recordings: files, packed ones, addresses; what a path, folder or pattern means."""
+"""The places of recordings: files, compressed files, addresses, folders and patterns."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from rvmon.recordings import FORMATS, form_of_folder
 from rvmon.recordings.values import first_line
 from rvmon.texts import cannot_read
 
-PACKED = (".gz", ".zst")  # endings of text that is packed
+PACKED = (".gz", ".zst")  # endings of compressed text
 
 JOINT = " + "
-"""Between the paths, of files and of folders of files, that are one recording; also behind one."""
+"""Separates the paths (files or folders) that form one recording; a single path may end in it."""
 
 _ADDRESS = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+://")
 
 
 def is_address(path: str) -> bool:
-    """Whether it is an address such as `https://…` or `s3://…`, and no path.
+    """Whether a path is an address such as `https://…` or `s3://…`.
 
     >>> is_address("s3://runs/monday.csv"), is_address("C:/runs/monday.csv")
     (True, False)
@@ -34,7 +34,7 @@ def is_address(path: str) -> bool:
 
 
 def endings_of(path: str) -> tuple[str, str]:
-    """The ending that says the format, and that of a packed file; each empty if there is none.
+    """The ending that tells the format, and that of the compression; each is "" if there is none.
 
     >>> endings_of("runs/Monday.CSV.gz"), endings_of("https://host/a.mcap?version=3")
     (('.csv', '.gz'), ('.mcap', ''))
@@ -62,10 +62,10 @@ def _path_in(address: str) -> str:
 
 @contextmanager
 def opened(path: str | Path) -> Iterator[tuple[BinaryIO, BinaryIO]]:
-    """The bytes of a file or address, unpacked, and the file as it lies there.
+    """Open a file or address: its decompressed bytes, and the raw file.
 
     Raises:
-        TraceError: an address cannot be read; or, while it is read, what is packed is damaged.
+        TraceError: an address cannot be read; or, during reading, compressed data is damaged.
         RvmonError: a package is not installed.
         OSError: a file cannot be opened.
     """
@@ -87,7 +87,10 @@ def opened(path: str | Path) -> Iterator[tuple[BinaryIO, BinaryIO]]:
 
 @contextmanager
 def named_errors(path: str | Path) -> Iterator[None]:
-    """Errors inside are given the name of a file."""
+    """Put the name of a file in front of the errors raised inside, as `TraceError`.
+
+    A message that starts with the path, or with one of several joined paths, is not changed.
+    """
     try:
         yield
     except UnicodeDecodeError as error:
@@ -103,7 +106,7 @@ def named_errors(path: str | Path) -> Iterator[None]:
 
 @contextmanager
 def created(path: Path) -> Iterator[BinaryIO]:
-    """A new file to write; it is packed as its ending says."""
+    """Create a file for writing, compressed if its ending says so."""
     packed = endings_of(str(path))[1]
     with open(path, "wb") as raw:
         if not packed:
@@ -114,14 +117,14 @@ def created(path: Path) -> Iterator[BinaryIO]:
 
 
 def _packing(packed: str) -> tuple[Callable[[BinaryIO, str], Any], tuple[type[Exception], ...]]:
-    """The function that opens a packed file, and the exceptions that it raises on damage."""
+    """The function that opens a compressed file, and the exceptions that it raises on damage."""
     if packed == ".gz":
         import gzip
         import zlib
 
         return gzip.open, (EOFError, gzip.BadGzipFile, zlib.error)
     try:
-        from compression import zstd  # of Python from 3.14 on
+        from compression import zstd  # from Python 3.14 on
     except ImportError:
         with needed("Zstandard", "backports.zstd"):
             from backports import zstd
@@ -129,20 +132,20 @@ def _packing(packed: str) -> tuple[Callable[[BinaryIO, str], Any], tuple[type[Ex
 
 
 def local_path(path: str) -> Path:
-    """The path of a file; of an address that of its copy, kept until another one is asked for."""
+    """The path of a file, or that of a copy of an address; the copy is kept until the next one."""
     if not is_address(path):
         return Path(path)
     with _remote_errors(path):
         system, inner = _system(path)
         info = system.info(inner)
-        # What was read must not pass for what has been put there since.
+        # An old copy must not pass for a file that has changed at the address since.
         state = repr(sorted((key, str(value)) for key, value in info.items()))
         return _copy(path, state).path
 
 
 @contextmanager
 def without_copies() -> Iterator[None]:
-    """Leave no copy of an address behind."""
+    """Remove the copy of an address at the end."""
     try:
         yield
     finally:
@@ -150,7 +153,7 @@ def without_copies() -> Iterator[None]:
 
 
 class _Copy:
-    """A file that goes with its last user, but not with a copy of the process."""
+    """A temporary file that is removed with its last user, but not by a forked process."""
 
     def __init__(self, name: str) -> None:
         from tempfile import mkdtemp
@@ -169,7 +172,7 @@ def _remove(folder: str, process: int) -> None:
 
 @lru_cache(maxsize=1)
 def _copy(address: str, _state: str) -> _Copy:
-    """A copy of a file; a folder is copied whole."""
+    """Copy a file or a whole folder from an address; `_state` makes a changed one a new copy."""
     system, inner = _system(address)
     made = _Copy(name_of(address))
     system.get(inner, str(made.path), recursive=system.isdir(inner))
@@ -177,7 +180,7 @@ def _copy(address: str, _state: str) -> _Copy:
 
 
 def matching_addresses(pattern: str) -> list[str]:
-    """The addresses that a pattern with `*` stands for, sorted."""
+    """The addresses that match a pattern with `*`, sorted."""
     with _remote_errors(pattern):
         system, inner = _system(pattern)
         return sorted(system.unstrip_protocol(name) for name in system.glob(inner))
@@ -202,18 +205,21 @@ def _remote_errors(address: str) -> Iterator[None]:
         extra = {"s3": "s3", "http": "remote", "https": "remote"}.get(address.partition(":")[0])
         how = f": pip install 'rvmon[{extra}]'" if extra else ""
         raise RvmonError(f"{address}: {first_line(error)}{how}") from None
-    except Exception as error:  # noqa: BLE001 - each kind of place has errors of its own
+    except Exception as error:  # noqa: BLE001 - each kind of storage has its own errors
         raise TraceError(f"{address}: cannot be read ({first_line(error)})") from None
 
 
-BLOCK = 1 << 20  # bytes of a piece
+BLOCK = 1 << 20  # bytes that are read at a time
 
 
-LONGEST_LINE = 1 << 26  # characters of a line; longer ones are refused
+LONGEST_LINE = 1 << 26  # characters; a longer line is an error
 
 
 def bounded_lines(text: TextIO, before: int = 0) -> Iterator[str]:
-    """The lines of a text, which never fill the memory; so many stand before them."""
+    """Yield the lines of a text; a line so long that it could fill the memory is an error.
+
+    `before`: the number of lines before the text, for the error.
+    """
     for number, line in enumerate(iter(partial(text.readline, LONGEST_LINE + 1), ""), 1 + before):
         if len(line) > LONGEST_LINE:
             raise TraceError(
@@ -224,9 +230,9 @@ def bounded_lines(text: TextIO, before: int = 0) -> Iterator[str]:
 
 
 def whole_pieces(file: BinaryIO, size: int) -> Iterator[bytes]:
-    r"""A file in pieces of whole lines; the last line may lack its end.
+    r"""Yield a file in pieces of whole lines; the last line may lack its end.
 
-    What follows a line that is too long is not read: who reads the line refuses it.
+    Reading stops at a line that is too long, and yields its start: the caller refuses that line.
     """
     parts: list[bytes] = []
     length = 0
@@ -242,9 +248,10 @@ def whole_pieces(file: BinaryIO, size: int) -> Iterator[bytes]:
 
 
 def is_short_of_memory() -> bool:
-    """Whether addresses are limited (`--max-memory`): Arrow reserves many more than it uses.
+    """Whether the address space is limited (`--max-memory`).
 
-    A thread of it that gets none may end the process.
+    Readers then start no threads: Arrow reserves far more address space than it uses, and a thread
+    that gets none may end the process.
     """
     try:
         import resource
@@ -256,21 +263,22 @@ def is_short_of_memory() -> bool:
 _MAGIC = frozenset("*?[")
 
 _UNREAD = (".xz", ".bz2", ".lz4", ".zip", ".7z", ".zstd", ".active")
-"""Endings behind that of a recording which is packed otherwise, or was not closed, as its recorder
-was ended: nothing here reads it, but who reads it says so."""
+"""Endings, after that of a format, of recordings that cannot be read: compressed otherwise, or not
+closed because the recorder was killed. They are found all the same, so that reading reports them.
+"""
 
 
 def found_recordings(paths: Iterable[str]) -> Iterator[str]:
-    """The recordings at paths, in their order.
+    """Yield the recordings that paths stand for, in the order of the paths.
 
     Args:
-        paths: a file, a folder that is one recording, `-` or an address stands for itself; another
-            folder for the recordings in it and in its folders, a pattern (`*`, `?`, `[…]`, `**`)
-            for what is called so, both sorted.
+        paths: a file, a folder that is one recording, `-` or an address stands for itself. Any
+            other folder stands for the recordings in it and in its subfolders, a pattern (`*`, `?`,
+            `[…]`, `**`; of an address: `*`) for the recordings that match it, both sorted.
 
     Raises:
-        TraceError: a folder or pattern stands for none.
-        RvmonError: what reads addresses is not installed.
+        TraceError: a folder or pattern stands for no recording.
+        RvmonError: the package that reads an address is not installed.
     """
     for path in paths:
         if is_address(path):
@@ -283,19 +291,23 @@ def found_recordings(paths: Iterable[str]) -> Iterator[str]:
         else:
             from glob import iglob
 
-            # `**` stands for a folder and for what is in it.
+            # The set removes duplicates: `**` matches a folder and everything in it.
             found = {one for match in iglob(path, recursive=True) for one in _recordings_at(match)}
             yield from _some(sorted(found), path)
 
 
 def files_of(path: str) -> list[str]:
-    """The files of which a recording is joined; what is one file, or folder, is itself."""
+    """The files of a joined recording; any other recording is its own single file."""
     is_joined = JOINT in path and not os.path.lexists(path)
     return list(found_recordings(filter(None, path.split(JOINT)))) if is_joined else [path]
 
 
 def one_recording(path: str) -> str:
-    """The recording at a path, or the only one in a folder, as of a bag that was not closed."""
+    """The recording at a path; of a folder, the only one in it, as in a bag that was not closed.
+
+    Raises:
+        TraceError: a folder holds several recordings, or none.
+    """
     if is_address(path) or not os.path.isdir(path) or form_of_folder(path):
         return path
     found = list(found_recordings([path]))
@@ -314,7 +326,7 @@ def _some(found: list[str], path: str) -> list[str]:
 
 
 def _recordings_at(path: str, above: frozenset[str] = frozenset()) -> Iterator[str]:
-    """A recording, or those in a folder; none anew in one that links to a folder above it."""
+    """Yield a recording, or those in a folder; links to a folder in `above` are not followed."""
     if form_of_folder(path):
         yield path
     elif os.path.isdir(path):

@@ -42,21 +42,21 @@ _SECONDS = stamps_of("t")
 JOINED = "joined"  # the format of several files that are one recording: `odom.csv + status.csv`
 
 
-_UNITS = {"parquet": "row", JOINED: "joined row"}  # what messages call a row; of text it is a line
+_UNITS = {"parquet": "row", JOINED: "joined row"}  # the word for a row in errors; default: line
 
 
 class FileRecording:
-    """A recording, read as a stream: memory does not grow with its length."""
+    """A recording on disk, read as a stream: memory does not grow with its length."""
 
     def __init__(self, path: str | Path, schema: Schema, *, ordered: bool = True) -> None:
         """Open the recording and read its header.
 
         Args:
-            path: a file, or `-`; text may be packed (`.csv.gz`, `.jsonl.zst`), and any may be an
-                address.
-            schema: the names that the spec declares, and how the recording gives them.
-            ordered: whether a stamp before the one above it is an error. Under `max delay` rows are
-                put in order instead.
+            path: a file, an address, or `-` for standard input. Text may be compressed (`.csv.gz`,
+                `.jsonl.zst`).
+            schema: the names that the spec declares, and how the recording provides them.
+            ordered: whether a stamp before that of the previous row is an error. Under `max delay`
+                rows are sorted instead.
 
         Raises:
             TraceError: the file cannot be opened, its ending is unknown or its header wrong.
@@ -64,8 +64,8 @@ class FileRecording:
         self.path = str(path)  # the file, `-` for standard input
         self._schema = schema
         self._ordered = ordered
-        # the names that are not declared, counted as they are read; not of messages, which are
-        # recorded for more than one purpose
+        # how often each undeclared name was read. Messages are not counted: a bag is recorded for
+        # more than one purpose, so undeclared topics are no mistake.
         self.ignored: Counter[str] = Counter()
         self._format = format_of(self.path)
         brings_stamps = self.is_of_messages and self._format not in ARRAYS
@@ -74,7 +74,7 @@ class FileRecording:
         if self._format not in (*MESSAGE_FORMS, JOINED) and schema.binding != BY_NAME:
             message = "a binding or clock is of messages, which bags and MCAP files hold: use --map"
             raise TraceError(f"{self.path}: {message}")
-        # whether it is no stream, which is gone when it was read
+        # false for a stream, which can be read once only
         self.can_be_read_again = can_be_read_again(self.path)
         if not self.can_be_read_again and self._format in ("csv", "parquet"):
             message = "is a pipe: pipes hold JSON lines; keep other recordings in a file"
@@ -83,9 +83,9 @@ class FileRecording:
         self.rows = Rows(schema, unit, ordered=ordered)  # turns its rows into samples
         self._open_file: BinaryIO | None = None
         self._stamps = schema.stamps or _SECONDS
-        # declared names that have a column; `None` for JSON lines, where any may come
+        # declared names that have a column or topic; `None` for JSON lines, where any may occur
         self.names: frozenset[str] | None = None
-        # of messages the last instant of the recording, ticks; `None`: its last sample
+        # the end that messages give for the recording, ticks; `None`: it ends with its last sample
         self.end: int | None = None
         self._messages: MessageFile | None = None
         self._joined: Joined | None = None
@@ -122,18 +122,18 @@ class FileRecording:
 
     @property
     def is_of_messages(self) -> bool:
-        """Whether it holds messages of topics, and no columns."""
+        """Whether the recording holds messages of topics instead of columns."""
         return self._format in MESSAGE_FORMS
 
     @property
     def unread(self) -> Sequence[str]:
-        """The columns, or topics and fields, that nothing is declared for."""
+        """The columns, or topics and fields, for which no name is declared."""
         held = self._messages or self._joined
         return list(self.ignored) if held is None else held.unread
 
     @property
     def outages(self) -> Sequence[Outage]:
-        """The outages, in order; a text has none."""
+        """The outages, in order of time; a table or text has none."""
         held = self._messages or self._joined
         return () if held is None else held.outages
 
@@ -144,7 +144,11 @@ class FileRecording:
             self.ignored[name] += 1
 
     def __iter__(self) -> Iterator[Sample]:
-        """Samples in order of time, equal stamps merged."""
+        """Yield samples in order of time, with equal stamps merged.
+
+        Raises:
+            TraceError: with file and line; also if there is no sample.
+        """
         return self._some(self.samples())
 
     def _some(self, read: Iterator[_Piece]) -> Iterator[_Piece]:
@@ -154,11 +158,11 @@ class FileRecording:
                 raise TraceError("holds no sample")
 
     def samples(self) -> Iterator[Sample]:
-        """The same, of which there may be none; its errors do not name the file."""
+        """Yield samples as `__iter__` does; there may be none, and errors do not name the file."""
         if self._joined is not None:
             yield from self._joined
         else:
-            with closing(self._each_row()) as rows:  # also where a row is wrong
+            with closing(self._each_row()) as rows:  # a wrong row must not leave the file open
                 yield from self.rows.samples(rows)
 
     def _each_row(self) -> Generator[Row]:
@@ -169,15 +173,15 @@ class FileRecording:
                 yield from piece.numbered() if hasattr(piece, "numbered") else piece
 
     def pieces(self) -> Iterator[Batch | Sample]:
-        """The recording in order: rows as columns where it has such, else samples; see `__iter__`.
+        """Yield the recording in order, as batches of columns where possible, else as samples.
 
         Raises:
-            TraceError: with file and line.
+            TraceError: with file and line; also if there is no sample.
         """
         return self._some(self.parts())
 
     def parts(self) -> Iterator[Batch | Sample]:
-        """The same, of which there may be none; its errors do not name the file."""
+        """Yield pieces as `pieces` does; there may be none, and errors do not name the file."""
         if self._joined is not None:
             yield from self._joined.pieces()
         elif self._messages is None and self.can_be_read_again and self._ordered:
@@ -187,10 +191,12 @@ class FileRecording:
             yield from self.samples()
 
     def stamps(self) -> Generator[tuple[NDArray[np.int64], NDArray[np.int64]]]:
-        """Of some rows at a time, as they stand in a text: the lines they end on, and the ticks.
+        """Yield, for some rows at a time in file order, the line (or number) of each and its ticks.
+
+        A row of several lines has the number of its last line. Both arrays are int64[n].
 
         Raises:
-            TraceError: with file and line.
+            TraceError: with file and line; the rows before a wrong one are yielded first.
         """
         import numpy as np
 
@@ -200,7 +206,7 @@ class FileRecording:
                     rows: list[tuple[int, int]] = []
                     try:
                         rows.extend((line, t) for line, t, *_ in piece)
-                    finally:  # also those before one that is wrong
+                    finally:  # the rows before a wrong one count, too
                         if rows:
                             lines, times = np.array(rows, np.int64).T
                             yield lines, times
@@ -240,7 +246,7 @@ class FileRecording:
 
     @property
     def fraction_read(self) -> float:
-        """The share of the file that has been read, 0 to 1; 0 if unknown."""
+        """The fraction of the file that has been read, 0 to 1; 0 if unknown."""
         if self._messages is not None:
             return min(1.0, self.rows.count / (self._messages.count or inf))
         if self._open_file is None or self._open_file.closed:
@@ -248,10 +254,11 @@ class FileRecording:
         return self._open_file.tell() / max(1, os.fstat(self._open_file.fileno()).st_size)
 
     def stamp_doubts(self) -> list[Health]:
-        """The doubts about its stamps.
+        """The doubts about the stamps.
 
-        Those of columns look like milliseconds, by the first ones, which are read if they were not
-        yet; of messages that were read the headers say otherwise than the log.
+        Stamps of columns are in doubt if the first ones look like milliseconds; these are read here
+        if nothing was read before. Stamps of messages are in doubt if the headers of those read
+        disagree with the log.
         """
         if self._messages is not None:
             return self._messages.skew.doubts()
@@ -267,7 +274,7 @@ class FileRecording:
         return doubt_unit(first, self._stamps)
 
     def health(self) -> list[Health]:
-        """The findings while reading: undeclared names, conflicts, a doubtful unit of time."""
+        """The findings of reading: undeclared names, conflicts, doubts about stamps and the end."""
         ignored = [
             Health(HealthKind.IGNORED, name, count, remark="not declared in the spec")
             for name, count in self.ignored.items()
@@ -275,11 +282,11 @@ class FileRecording:
         return ignored + self.rows.doubts() + self.doubts()
 
     def doubts(self) -> list[Health]:
-        """The doubts about its stamps and its end."""
+        """The doubts about the stamps and the end of the recording."""
         return self.stamp_doubts() + self._cut_off()
 
     def _cut_off(self) -> list[Health]:
-        """The doubt about the last cell: without an end of line it may have been cut."""
+        """The doubt about the last cell, which may be cut off if its line has no end."""
         if self._text is None or not self._text.lost:
             return []
         names = ", ".join(f"`{name}`" for name in sorted(self._text.lost))
@@ -302,12 +309,12 @@ class FileRecording:
             raise TraceError("is empty: expected a header with a time column `t`") from None
         found = read_layout(*bare_names(header, self._schema))
         known.clear()
-        if text.rest is source:
+        if text.rest is source:  # else the header went on beyond the block that was at hand
             known[source[start : text.start]] = found
         return found
 
     def _opened(self) -> AbstractContextManager[tuple[BinaryIO, BinaryIO]]:
-        """The text, and the file as it lies there."""
+        """Open the text: its plain bytes, and the raw file, whose position tells the progress."""
         if self.path == "-":
             return nullcontext((sys.stdin.buffer, sys.stdin.buffer))
         if self._format == "csv":
@@ -316,7 +323,11 @@ class FileRecording:
 
 
 def messages_of(path: str) -> MessageFile:
-    """A recording of messages, looked at."""
+    """Open a recording of messages to inspect its topics.
+
+    Raises:
+        TraceError: the recording has columns, or is several files.
+    """
     recording = FileRecording(path, Schema({}, {}))
     if recording._joined is not None:
         raise TraceError(f"{path}: of several files bindings are proposed one by one: name each")
@@ -326,7 +337,7 @@ def messages_of(path: str) -> MessageFile:
 
 
 def can_be_read_again(path: str) -> bool:
-    """Whether a recording is a file, and not a stream that is gone when it was read."""
+    """Whether a recording is a file or address, not a stream that can be read once only."""
     if path == "-" or places.is_address(path):
         return path != "-"
     try:
@@ -336,7 +347,11 @@ def can_be_read_again(path: str) -> bool:
 
 
 def format_of(path: str) -> str:
-    """The format that a name stands for."""
+    """The format of a recording by its path.
+
+    Raises:
+        TraceError: there is no such file, its ending is unknown, or its format cannot be packed.
+    """
     if path == "-":
         return "jsonl"
     if places.JOINT in path and not os.path.lexists(path):

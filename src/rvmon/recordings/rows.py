@@ -1,4 +1,4 @@
-"""Rows of any source as samples: in order, equal stamps merged."""
+"""Conversion of rows of any source to samples: in order, with equal stamps merged."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from rvmon.trace.time import TICKS_PER_SECOND, format_ticks
 if TYPE_CHECKING:
     from rvmon.recordings.batch import Batch
 
-LOOKED_AT = 1_000  # the number of stamps, from the first, that are examined
-FEWEST = 10  # the fewest stamps about which anything is reported
-LONG_STEP = 5  # seconds of a median step from which on seconds may be milliseconds
+LOOKED_AT = 1_000  # only this many stamps at the start are examined
+FEWEST = 10  # with fewer stamps nothing is reported
+LONG_STEP = 5  # from this median step on (seconds), stamps may be milliseconds
 
 
 def median_step(times: Sequence[float]) -> float:
-    """The median of the steps forward; 0 if there are none.
+    """The median of the increasing steps between neighbours; 0 if there are none.
 
     >>> median_step([0, 1, 1, 3, 6])
     2
@@ -36,10 +36,10 @@ _LONG = 10_000 * TICKS_PER_SECOND
 
 
 def doubt_unit(times: Sequence[int], stamps: Stamps) -> list[Health]:
-    """A remark if stamps look like milliseconds.
+    """Report stamps that are read as seconds but look like milliseconds.
 
-    They do if their median step would be 5 s or more, and either all are whole numbers or a
-    thousand of them would take 10,000 s or more. A unit that a person has named is not doubted.
+    They look so if their median step is 5 s or more and either all of them are whole seconds or
+    the first thousand span 10,000 s or more. A unit that the user has named is not doubted.
 
     >>> doubt_unit([20 * TICKS_PER_SECOND * k for k in range(10)], Stamps("t", "s"))[0].remark
     'from stamp to stamp it is 20 s: are these milliseconds? `--time t:ms` (if not: `--time t:s`)'
@@ -59,22 +59,22 @@ def doubt_unit(times: Sequence[int], stamps: Stamps) -> list[Health]:
     return [Health(HealthKind.UNIT, column, 1, times[0], remark=remark)]
 
 
-ROOM = 65_536  # the most rows that wait for late ones
+ROOM = 65_536  # the most rows that are held back to sort in late ones
 
 LEAP = 365 * 86_400 * TICKS_PER_SECOND
-"""Ticks of a year, for which no recording is silent: one of the two stamps is of another clock."""
+"""A year, in ticks. No recording pauses that long, so one of the two stamps is of another clock."""
 
-Row = tuple[int, int, Mapping[str, Value]]  # number, ticks, what it updates
+Row = tuple[int, int, Mapping[str, Value]]  # number, ticks, values by name
 
 
 class Rows:
-    """Makes samples of rows, and notes what is odd about them.
+    """Converts rows to samples and records findings about them.
 
     Args:
         schema: the declared names.
-        unit: the word for a row.
-        ordered: whether a stamp before the one above it is an error. Under `max delay` rows are put
-            in order instead.
+        unit: the word for a row in errors.
+        ordered: whether a stamp before that of the previous row is an error. Under `max delay` rows
+            are sorted instead.
     """
 
     def __init__(self, schema: Schema, unit: str, *, ordered: bool) -> None:
@@ -84,20 +84,23 @@ class Rows:
         self._begin()
 
     def samples(self, rows: Iterable[Row]) -> Iterator[Sample]:
-        """The samples of a source that is read from its start.
+        """Yield the samples of a source that is read from its start.
 
         Raises:
-            TimeOrderError: a row is before the one above it, or late by more than `ROOM` rows.
+            TimeOrderError: a stamp is before that of the previous row, or a row is late by more
+                than `ROOM` rows.
         """
         return self.pieces([rows])  # type: ignore[return-value]  # rows become no batches
 
     def pieces(self, pieces: Iterable[Batch | Iterable[Row]]) -> Iterator[Batch | Sample]:
-        """The same of a source of which some rows come as columns; so they are given out.
+        """Yield batches and samples of a source whose rows come partly as batches.
 
-        What ends a batch comes as a sample: rows of its instant may follow, but for the last batch.
+        The rows at the last instant of a batch come out as a sample, because the next piece may
+        start with the same instant; only a batch that is known to be the last stays whole.
 
         Raises:
-            TimeOrderError: a row is before the one above it; those of columns are never sorted.
+            TimeOrderError: a stamp is before that of the previous row (rows of a batch are never
+                sorted), or a row is late by more than `ROOM` rows.
         """
         from rvmon.recordings.batch import Batch, note_batch, without_ignored
 
@@ -112,8 +115,8 @@ class Rows:
                 times, count = batch.times, len(batch.times)
                 start = 0 if held is None else int(times.searchsorted(held.t, "right"))
                 stop = count
-                # Rows at the last instant of a batch stay behind: the next piece may begin with the
-                # same instant.
+                # Hold back the rows at the last instant: the next piece may start with the same
+                # instant.
                 if count and not batch.is_last:
                     stop = max(start, int(times.searchsorted(times[-1])))
                 for sample in batch.rows(0, start):
@@ -144,7 +147,7 @@ class Rows:
 
     def _begin(self) -> None:
         self._conflicts, self.alternations = Conflicts(), Alternations()
-        # of rows that were read; the most by which time goes backwards, ticks, where it may
+        # the number of rows read; the most by which one was late, ticks (0 if rows are not sorted)
         self.count = self.lateness = 0
         self.first: list[int] = []  # the instants of the first rows, ticks
         self._last: int | None = None
@@ -159,11 +162,11 @@ class Rows:
 
     @property
     def place(self) -> str:
-        """The rows that the latest sample was made of, for a message."""
+        """The rows that made up the latest sample, for a message."""
         return self.place_of(*self._given)
 
     def place_of(self, first: int, last: int) -> str:
-        """Rows by their numbers, for a message.
+        """The rows with these numbers, for a message.
 
         >>> Rows(Schema({}, {}), "line", ordered=True).place_of(3, 3)
         'line 3'
@@ -174,7 +177,11 @@ class Rows:
         return Sample(held.t, merged(held, sample.values, self._schema.events, self._conflicts))
 
     def _note_times(self, batch: Batch) -> tuple[Batch, bool]:
-        """The rows that are in order, whose first instants are noted; whether each has its own."""
+        """Take note of instants; give the rows before time goes back, and whether they all differ.
+
+        Raises:
+            TimeOrderError: the first row is before the last one of the previous piece.
+        """
         times = batch.times
         if not len(times):
             return batch, True
@@ -195,7 +202,7 @@ class Rows:
         return batch, rise
 
     def _then_backwards(self, batch: Batch, start: int, stop: int) -> Iterator[Sample]:
-        """Rows of a batch; it is an error if it has a further row, which is out of order."""
+        """Yield rows `start` to `stop` of a batch; a row after them is out of order, an error."""
         for row, sample in enumerate(batch.rows(start, stop), start):
             self._number = batch.number_of(row)
             yield sample
@@ -221,11 +228,11 @@ class Rows:
             self.count += 1
             if len(self.first) < LOOKED_AT:
                 self.first.append(t)
-            # Before equal stamps are merged: what is no update is no other value, either.
+            # Before equal stamps are merged, as a value that is no update cannot conflict.
             yield Sample(t, updates_in(values, self._schema.ignoring))
 
     def _sorted(self, rows: Iterable[Row]) -> Iterator[Row]:
-        """Rows by time, those of one instant as they come."""
+        """Yield rows sorted by time; rows of one instant keep their order."""
         latest = None
         waiting: list[tuple[int, int, Row]] = []
         fault = None
@@ -243,7 +250,7 @@ class Rows:
                 if len(waiting) > ROOM:
                     yield heappop(waiting)[2]
         except TraceError as error:
-            fault = error
+            fault = error  # raised after the rows that came before it
         while waiting:
             yield heappop(waiting)[2]
         if fault is not None:
@@ -253,7 +260,7 @@ class Rows:
                 del fault  # its traceback holds this frame, and with it an open file
 
     def doubts(self) -> list[Health]:
-        """The doubts: signals with two values at one stamp, stamps of another clock."""
+        """The doubts about rows: signals with two values at one stamp, stamps of another clock."""
         found = self._conflicts.health()
         if self._leaps:
             last, t = self._leaps[0]
@@ -265,5 +272,5 @@ class Rows:
         return found
 
     def with_findings(self, health: Sequence[Health]) -> tuple[Health, ...]:
-        """The findings of a monitor about these samples, with those made here."""
+        """The findings of a monitor about these samples, together with the doubts about rows."""
         return (*self.alternations.remarked(health), *self.doubts())

@@ -1,4 +1,4 @@
-"""Sources of traces: whatever may be given as one, the way to read it, its pieces for the core."""
+"""Sources of traces: makes a recording of what callers pass as a trace, and yields its pieces."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ if TYPE_CHECKING:
 
 
 class Source(Struct, frozen=True):
-    """A finished trace, and how it is to be taken."""
+    """A finished trace with the options for reading it."""
 
-    # gives samples; one that has columns has `pieces` as well: see
+    # gives samples; if it has columns it has a method `pieces`, too: see
     # `rvmon.recordings.recording.FileRecording`
     recording: Recording
-    until: int | None = None  # the end of the trace in ticks, if it is not its last sample
-    is_cut: bool = False  # whether what comes after that end is left out
-    # passes samples and batches on as they are read, with a progress bar
+    until: int | None = None  # the end of the trace in ticks, if not the end of the recording
+    is_cut: bool = False  # whether the samples after `until` are left out
+    # wraps the iterator of samples and batches, for example to draw a progress bar
     shown: Callable[[Iterator[Any]], Iterator[Any]] = iter
-    # called with each sample or batch once it was judged, and the run, which goes on
+    # called after each sample or batch was judged, with it and the monitor, which continues
     taken: Callable[[Any, native.Monitor], object] | None = None
 
     @property
@@ -45,23 +45,23 @@ class Source(Struct, frozen=True):
 
     @property
     def end(self) -> int | None:
-        """The end of the trace in ticks; `None`: its last sample."""
+        """The end of the trace in ticks; `None`: it ends with its last sample."""
         return self.recording.end if self.until is None else self.until
 
     @property
     def outages(self) -> Sequence[Outage]:
-        """The stretches that were lost."""
+        """The outages of the recording."""
         return getattr(self.recording, "outages", ())
 
     def samples(self) -> Iterator[Sample]:
-        """The samples; what lies behind the end is not read, and may be broken."""
+        """The samples; if the trace is cut, reading stops at its end, so the rest may be broken."""
         until, samples = self.until, self.shown(iter(self.recording))
         if until is None or not self.is_cut:
             return samples
         return takewhile(lambda sample: sample.t <= until, samples)
 
     def pieces(self) -> Iterator[Batch | Sample]:
-        """The recording in order: rows as columns where it has such, else samples."""
+        """Yield the recording in order, as batches of columns where possible, else as samples."""
         read = getattr(self.recording, "pieces", None)
         if read is None:
             yield from self.samples()
@@ -71,7 +71,7 @@ class Source(Struct, frozen=True):
 
 
 def pieces_up_to(pieces: Iterable[Batch | Sample], end: int) -> Iterator[Batch | Sample]:
-    """Pieces of a recording up to an instant (ticks); those behind it are not read."""
+    """Yield pieces of a recording up to an instant (ticks), and stop reading after it."""
     for piece in pieces:
         if isinstance(piece, Sample):
             if piece.t > end:
@@ -86,7 +86,7 @@ def pieces_up_to(pieces: Iterable[Batch | Sample], end: int) -> Iterator[Batch |
 
 
 class SchemaArguments(TypedDict, total=False):
-    """The arguments of `Spec.reading`; it says what they mean."""
+    """The arguments of `Spec.reading`, which documents them."""
 
     time: str | None
     columns: Mapping[str, str] | None
@@ -97,34 +97,34 @@ class SchemaArguments(TypedDict, total=False):
 
 
 class ReadingArguments(SchemaArguments, total=False):
-    """The arguments that `Spec.evaluate` and its kin have in common; it says what they mean."""
+    """The arguments common to `Spec.evaluate`, which documents them, and similar methods."""
 
     sources: Iterable[str] | None
     allow_missing: bool | Iterable[str]
 
 
 class Reading(Struct, frozen=True):
-    """The options of `Spec.evaluate` and its kin about a trace."""
+    """The options for reading a trace, of `Spec.evaluate` and similar methods."""
 
-    schema: Schema  # the declared names, and how the trace gives them
+    schema: Schema  # the declared names, and how the trace provides them
     # the signals and events that can arrive; `None`: those that the trace has
     sources: frozenset[str] | None = None
-    # the names that a trace in columns may lack though requirements read them; whether all
+    # the names that a trace in columns may lack although requirements read them; `True`: all
     allowed: bool | tuple[str, ...] = False
 
 
 def recording_of(
     trace: Any, schema: Schema, *, ordered: bool, sources: frozenset[str] | None = None
 ) -> Recording:
-    """A trace as a recording; it need not be read yet.
+    """Make a recording of whatever a caller passes as a trace; samples are mostly read later.
 
     Args:
         trace: a path, a table (columns by name, an Arrow table, a data frame), a list of paths or
-            of tables that are one recording, a recording, or an iterable of `(t, values)` with t in
-            seconds.
-        schema: the declared names, and how the trace gives them; a recording says so itself.
-        ordered: whether a stamp that is before the one above it is an error.
-        sources: the names that can arrive; default those that the trace has.
+            of tables that form one recording, a recording, or an iterable of `(t, values)` with t
+            in seconds.
+        schema: the declared names, and how the trace provides them; not used for a recording.
+        ordered: whether a stamp before that of the previous row is an error.
+        sources: the names that can arrive; default: those that the trace has.
 
     Raises:
         TraceError: the trace cannot be read.
@@ -168,16 +168,20 @@ def _of_columns_or_lines(
 
 
 class PairRecording:
-    """Pairs `(t, values)`, t in seconds, as a recording.
+    """A recording of pairs `(t, values)`, t in seconds.
 
-    Names that are absent are no update, `None` and NaN are unknown.
+    A name that is absent from `values` is not updated; one with `None` or NaN becomes unknown.
     """
 
-    names: frozenset[str] | None = None  # `None`: any may come
+    names: frozenset[str] | None = None  # `None`: any may occur
     end: int | None = None  # `None`: it ends with its last item
 
     def __init__(self, trace: Any, schema: Schema, *, ordered: bool = True) -> None:
-        """Take what can be gone through; values of names that are not declared stay as they are."""
+        """Take an iterable of pairs; values of undeclared names stay as they are.
+
+        Raises:
+            TraceError: `trace` is not iterable.
+        """
         if not isinstance(trace, Iterable):
             raise TraceError(
                 "expected a path, columns by name (arrays, a table, a data frame) or (t, values) "
@@ -188,11 +192,11 @@ class PairRecording:
         self._schema = schema
 
     def __iter__(self) -> Iterator[Sample]:
-        """Samples, equal stamps merged."""
+        """Yield samples in order of time, with equal stamps merged."""
         return self.rows.samples(self._read())
 
     def _read(self) -> Iterator[Row]:
-        """Number from 0, ticks and values of each item."""
+        """Yield the number (from 0), ticks and values of each item."""
         for number, item in enumerate(self._trace):
             match item:
                 case [t, Mapping() as values]:

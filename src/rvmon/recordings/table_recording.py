@@ -1,4 +1,4 @@
-"""Columns in memory as samples, row by row."""
+"""Recordings of tables in memory: columns become batches, or samples row by row."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class TableRecording:
-    """A table in memory as a recording, row by row.
+    """A recording of a table in memory.
 
     >>> from rvmon.trace.schema import Kind
     >>> table = TableRecording({"t": [0, 1], "v": [2, None]}, Schema({"v": Kind.REAL}, {}))
@@ -38,10 +38,10 @@ class TableRecording:
     outages: tuple[()] = ()
 
     def __init__(self, columns: Mapping[str, Any], schema: Schema, *, ordered: bool = True) -> None:
-        """Look at the names of columns: undeclared ones, and the one of time, are no signals.
+        """Match the names of the columns with those in the schema; no cell is read yet.
 
         Raises:
-            TraceError: there is no such time column.
+            TraceError: there is not one time column.
         """
         self._schema = schema
         self.columns = columns  # by name, see `rvmon.recordings.tables.columns_by_name`
@@ -51,16 +51,17 @@ class TableRecording:
         stamps = stamps_of_column(stamps, given)
         if is_of_durations(given):
             self.columns = {**columns, stamps.column: nanoseconds_of(given)}
-        self.layout: Layout = layout_of(header, stamps, schema)  # of the columns
-        self.names: frozenset[str] | None = self.layout.names  # declared names that have a source
-        self.ignored = Counter(self.layout.ignored)  # the columns that stand for nothing
+        self.layout: Layout = layout_of(header, stamps, schema)
+        self.names: frozenset[str] | None = self.layout.names  # declared names that have a column
+        self.ignored = Counter(self.layout.ignored)  # the columns for which no name is declared
         self.rows = Rows(schema, "row", ordered=ordered)  # turns its rows into samples
 
     def pieces(self) -> Iterator[Batch | Sample]:
-        """The table in order: its rows as columns, if they hold what is declared, else samples.
+        """Yield the table in order, as batches if all cells fit the declared kinds, else samples.
 
         Raises:
-            TraceError: as going through it does.
+            TraceError: a cell cannot be read, or columns differ in length.
+            TimeOrderError: time goes backwards.
         """
         return self.rows.pieces(self._batches()) if self.rows.ordered else iter(self)
 
@@ -71,11 +72,11 @@ class TableRecording:
             yield self._read()
 
     def __iter__(self) -> Iterator[Sample]:
-        """Samples in order of time, equal stamps merged."""
+        """Yield samples in order of time, with equal stamps merged; errors as in `pieces`."""
         return self.rows.samples(self._read())
 
     def _read(self) -> Iterator[Row]:
-        """Number from 0, ticks and values of each row."""
+        """Yield the number (from 0), ticks and values of each row."""
         layout = self.layout
         cells = {name: cells_of(name, self.columns[name]) for name in layout.names_read}
         lengths = {name: len(column) for name, column in cells.items()}
@@ -86,11 +87,11 @@ class TableRecording:
 
     @property
     def unread(self) -> list[str]:
-        """The columns that stand for nothing."""
+        """The columns for which no name is declared."""
         return list(self.ignored)
 
     def stamp_doubts(self) -> list[Health]:
-        """Whether its first stamps look like milliseconds; of a table that was read."""
+        """Report stamps that look like milliseconds, by the first ones."""
         stamps = self.layout.stamps
         if stamps.is_stated or stamps.unit != "s":
             return []
@@ -100,11 +101,14 @@ class TableRecording:
         first = cells_of(stamps.column, getattr(column, "iloc", column)[:LOOKED_AT])
         return doubt_unit([_ticks(cell, stamps, row) for row, cell in enumerate(first)], stamps)
 
-    parts, doubts = pieces, stamp_doubts  # as one of several that are joined
+    parts, doubts = pieces, stamp_doubts  # the protocol `rvmon.recordings.joined.File`
 
 
 def stamps_of_column(stamps: Stamps, column: Any) -> Stamps:
-    """The stamps of a column as its type says them: dates, if no unit is stated; durations."""
+    """The stamps of a column, whose type may say that they are dates or durations.
+
+    A unit that the user has stated takes precedence over dates, but not over durations.
+    """
     if not stamps.is_stated and is_of_dates(column):
         return Stamps(stamps.column, "iso", is_stated=True)
     if is_of_durations(column):
@@ -113,7 +117,13 @@ def stamps_of_column(stamps: Stamps, column: Any) -> Stamps:
 
 
 def rows_of_cells(columns: Iterable[Sequence[Any]], layout: Layout, first: int) -> Iterator[Row]:
-    """Rows of columns of values, those of stamps first; `None` is absent."""
+    """Yield rows of columns of values, the stamps first; a cell of `None` is no update.
+
+    `first`: the number of the first row.
+
+    Raises:
+        TraceError: a stamp cannot be read; the message has the number of the row.
+    """
     for row, (stamp, *cells) in enumerate(zip(*columns, strict=True), first):
         found = zip(layout.columns, map(plain, cells), strict=True)
         given = ((column, cell) for column, cell in found if cell is not None)
@@ -121,7 +131,7 @@ def rows_of_cells(columns: Iterable[Sequence[Any]], layout: Layout, first: int) 
 
 
 def _ticks(stamp: Any, stamps: Stamps, row: int) -> int:
-    """The instant of a row; ticks may be held as floats that are whole."""
+    """The instant of a row (ticks); nanoseconds may be floats with whole values."""
     whole = stamps.unit == "ns" and isinstance(stamp, float) and stamp.is_integer()
     try:
         return ticks_of_stamp(int(stamp) if whole else stamp, stamps)
@@ -130,11 +140,14 @@ def _ticks(stamp: Any, stamps: Stamps, row: int) -> int:
 
 
 def ticks_of_column(values: NDArray[Any], stamps: Stamps) -> NDArray[np.int64]:
-    """A column of stamps as ticks, each rounded once as `ticks_of_stamp` does.
+    """Convert a column of stamps to ticks, each rounded once as by `ticks_of_stamp`.
 
     Args:
-        values: int[n] or float[n]; of ticks themselves, int[n].
-        stamps: says their unit, not `iso`.
+        values: int[n] or float[n]; int[n] for nanoseconds.
+        stamps: gives their unit, which is not `iso`.
+
+    Raises:
+        TraceError: a stamp is not finite or out of range.
     """
     if not len(values):
         return np.empty(0, np.int64)
@@ -152,25 +165,25 @@ def ticks_of_column(values: NDArray[Any], stamps: Stamps) -> NDArray[np.int64]:
     return ticks_in_range(ticks)
 
 
-_PIECE = 1 << 14  # instants that are worked out together, near the processor
+_PIECE = 1 << 14  # instants that are computed together: their arrays fit into the cache
 
 
 def _rounded(
     values: NDArray[np.float64], stamps: Stamps, scale: int, most: int
 ) -> NDArray[np.int64]:
-    """Instants in units of so many ticks as ticks."""
+    """Instants in units of `scale` ticks, float64[n], as ticks; `most`: the largest whole stamp."""
     _refuse(values, most + 1, stamps)
     whole = np.trunc(values)
     parts = values - whole
     found = np.rint(parts * float(scale))
     sizes = np.spacing(np.abs(values))
-    # Where neighbouring doubles are more than a tick apart, the shortest decimal that means this
-    # double is what the writer meant.
+    # Where neighbouring doubles are more than a tick apart, the writer meant the shortest decimal
+    # that reads as this double.
     if (sizes * scale > 1).any():
         found = np.where(sizes * scale > 1, _of_fewest_digits(parts, sizes / 2, scale), found)
     ticks = whole.astype(np.int64) * scale + found.astype(np.int64)
-    # Near the middle of two ticks the product in doubles may round to the wrong side: these few are
-    # worked out exactly.
+    # Near the middle of two ticks the product of doubles may round to the wrong side. The few
+    # stamps there are computed exactly.
     unsure = np.abs(np.abs(parts * scale - np.trunc(parts * scale)) - 0.5) < 1e-5
     for row in np.flatnonzero(unsure & (sizes * scale <= 1)):
         ticks[row] = ticks_of_stamp(float(values[row]), stamps)
@@ -180,7 +193,10 @@ def _rounded(
 def _of_fewest_digits(
     parts: NDArray[np.float64], halves: NDArray[np.float64], scale: int
 ) -> NDArray[np.float64]:
-    """The decimals as ticks: as many digits as tell floats apart, see `exact`."""
+    """Fractions as ticks, rounded to the fewest digits that identify the double; see `exact`.
+
+    `halves`: half the distance to the neighbouring doubles, float64[n].
+    """
     power, found = float(scale), np.rint(parts * float(scale))
     while power > 1:
         power /= 10
@@ -193,11 +209,14 @@ def _of_fewest_digits(
 
 
 def ticks_in_range(ticks: NDArray[Any]) -> NDArray[np.int64]:
-    """Integers as ticks.
+    """Integers as ticks, int64[n], contiguous.
 
-    Only the ends are looked at: if these are in range, and whoever judges the column finds that it
-    ascends, all are. To read all of a long column costs as much as to judge it. A column of a
-    two-dimensional array is copied, as its ticks do not lie one behind the other.
+    Only the first and last one are checked. All are in range if these are and the column ascends,
+    which is checked while it is judged; reading all of a long column here would cost as much as
+    judging it. A column of a two-dimensional array is copied, as it is not contiguous.
+
+    Raises:
+        TraceError: the first or last one is out of range.
     """
     made = np.ascontiguousarray(ticks, np.int64)
     for end in made[:: max(len(made) - 1, 1)].tolist():
@@ -206,14 +225,18 @@ def ticks_in_range(ticks: NDArray[Any]) -> NDArray[np.int64]:
 
 
 def _refuse(values: NDArray[Any], most: int, stamps: Stamps) -> None:
-    """Refuse stamps beyond those bounds, and what is no number."""
+    """Raise `TraceError` if a stamp is NaN or beyond ±`most`."""
     if not -most <= values.min() <= values.max() <= most:
         fine = (values >= -most) & (values <= most)
         ticks_of_stamp(values[~fine][0].item(), stamps)
 
 
 def batch_of_table(columns: Mapping[str, Any], layout: Layout) -> Batch:
-    """A table as one batch; `NotPlainError`: who reads rows says what is wrong."""
+    """Convert a table to one batch.
+
+    Raises:
+        NotPlainError: the table must be read row by row, which also reports what is wrong with it.
+    """
     try:
         times = instants(columns[layout.stamps.column], layout.stamps)
         cells = {
@@ -230,11 +253,11 @@ def batch_of_table(columns: Mapping[str, Any], layout: Layout) -> Batch:
 
 
 def instants(column: Any, stamps: Stamps) -> NDArray[np.int64]:
-    """A column of stamps as ticks.
+    """Convert a column of stamps to ticks, int64[n].
 
     Raises:
-        NotPlainError: these are no plain numbers.
-        TraceError: one is not finite or out of range.
+        NotPlainError: the stamps are no plain numbers.
+        TraceError: a stamp is not finite or out of range.
     """
     if stamps.unit == "iso":
         raise NotPlainError("its stamps are dates")
@@ -248,6 +271,6 @@ def instants(column: Any, stamps: Stamps) -> NDArray[np.int64]:
 
 
 def _is_whole(column: Any) -> bool:
-    """Whether a column is of whole numbers, which doubles may not hold."""
+    """Whether a column has an integer type, whose values doubles may not hold exactly."""
     kind = getattr(column, "type", getattr(column, "dtype", ""))
     return str(kind).lower().startswith(("int", "uint"))

@@ -1,7 +1,7 @@
-"""Tables in memory as columns by name, whatever made them.
+"""Tables in memory, of any library, as columns by name.
 
-Arrow tables, whatever gives itself out as one by `__arrow_c_stream__` or `__dataframe__` (with
-pyarrow, the extra `arrow`), data frames of pandas and polars, mappings of arrays or lists.
+Accepted are Arrow tables, objects with `__arrow_c_stream__` or `__dataframe__` (these need pyarrow,
+the extra `arrow`), data frames of pandas and polars, and mappings of arrays or lists.
 """
 
 from __future__ import annotations
@@ -17,7 +17,11 @@ from rvmon.errors import TraceError, needed
 
 
 def columns_by_name(table: Any) -> dict[str, Any] | None:
-    """The columns of a table as they are; `None` if it is no table.
+    """The columns of a table, not converted; `None` if the object is no table.
+
+    Raises:
+        TraceError: two columns have the same name, or the table cannot be read.
+        RvmonError: pyarrow is needed and not installed.
 
     >>> columns_by_name({"t": [0, 1]}), columns_by_name([(0, {})])
     ({'t': [0, 1]}, None)
@@ -28,7 +32,7 @@ def columns_by_name(table: Any) -> dict[str, Any] | None:
         return _distinct(table.column_names, table.columns)
     if not (hasattr(table, "__arrow_c_stream__") or hasattr(table, "__dataframe__")):
         return None
-    # As Arrow, the NaN of a frame of pandas would be absent: its own columns distinguish them.
+    # Arrow would turn NaN in a pandas frame into null; the frame's own columns distinguish them.
     if hasattr(table, "columns") and hasattr(table, "shape"):
         return _frame_columns(table)
     imported = _imported(table)
@@ -38,7 +42,7 @@ def columns_by_name(table: Any) -> dict[str, Any] | None:
 def _frame_columns(frame: Any) -> dict[str, Any]:
     keys = list(frame.columns)
     found = _distinct([str(key) for key in keys], [frame[key] for key in keys])
-    index: Any = getattr(frame, "index", None)  # of pandas
+    index: Any = getattr(frame, "index", None)  # only pandas has one; it may hold the stamps
     if getattr(index, "name", None) is not None:
         found.setdefault(str(index.name), index)
     elif getattr(getattr(index, "dtype", None), "kind", "") in ("m", "M") and "t_ns" not in found:
@@ -47,7 +51,7 @@ def _frame_columns(frame: Any) -> dict[str, Any]:
 
 
 def _imported(table: Any) -> Any:
-    """An Arrow table of what gives itself out as one."""
+    """Import a table as an Arrow table."""
     kind = type(table).__name__
     with needed(kind, "pyarrow"):
         import pyarrow
@@ -70,11 +74,14 @@ def _distinct(names: Sequence[str], columns: Sequence[Any]) -> dict[str, Any]:
 
 
 def cells_of(name: str, column: Any) -> list[Any]:
-    """The cells of a column; dates and durations as text: they are no numbers of seconds.
+    """The cells of a column; dates and durations as text, as they are no numbers of seconds.
 
     Returns:
-        Values as Python has them; `None` where there is none: null, masked, missing in a column of
-        pandas that distinguishes that from NaN by its type.
+        Python values. `None` means that there is no value: null, masked, or missing in a pandas
+        column whose type distinguishes missing values from NaN.
+
+    Raises:
+        TraceError: the object is no array or list.
 
     >>> cells_of("x", [1, None])
     [1, None]
@@ -85,7 +92,7 @@ def cells_of(name: str, column: Any) -> list[Any]:
     if getattr(column, "ndim", 1) > 0 and not isinstance(column, str | bytes):
         if getattr(dtype, "kind", None) in ("m", "M"):
             return [str(cell) for cell in column]
-        if is_of_dates(column):  # of polars, whose lists have no nanoseconds
+        if is_of_dates(column):  # polars, whose lists drop nanoseconds
             return [str(cell) for cell in column.to_numpy()]
         try:
             listed = getattr(column, "tolist", None) or getattr(column, "to_list", None)
@@ -99,7 +106,7 @@ def cells_of(name: str, column: Any) -> list[Any]:
 
 
 def is_of_dates(column: Any) -> bool:
-    """Whether the cells of a column are dates with a time, by its type.
+    """Whether the type of a column says that its cells are dates with a time.
 
     >>> import numpy
     >>> is_of_dates(numpy.array(["2024-05-01"], "datetime64[ns]")), is_of_dates([0.5])
@@ -110,7 +117,7 @@ def is_of_dates(column: Any) -> bool:
 
 
 def is_of_durations(column: Any) -> bool:
-    """Whether the cells of a column are times since a start, by its type.
+    """Whether the type of a column says that its cells are durations.
 
     >>> import numpy
     >>> is_of_durations(numpy.array([1], "timedelta64[s]")), is_of_durations([0.5])
@@ -121,7 +128,7 @@ def is_of_durations(column: Any) -> bool:
 
 
 def nanoseconds_of(column: Any) -> Any:
-    """Durations as whole nanoseconds; one that is none is None.
+    """Durations as whole nanoseconds, int64[n]; a list with `None` where a duration is missing.
 
     >>> import numpy
     >>> nanoseconds_of(numpy.array([1, "NaT"], "timedelta64[us]"))
@@ -136,14 +143,17 @@ def nanoseconds_of(column: Any) -> Any:
 
 
 def _without_missing(series: Any, cells: list[Any]) -> list[Any]:
-    """The cells of a column of pandas; only NumPy's types have NaN for a value of their own."""
+    """The cells of a pandas column, `None` where one is missing.
+
+    Columns of NumPy types cannot tell a missing value from NaN, so their cells stay as they are.
+    """
     if type(series.dtype).__module__.partition(".")[0] == "numpy":
         return cells
     return [None if gone else cell for gone, cell in zip(series.isna(), cells, strict=True)]
 
 
 def arrow_cells(column: Any) -> list[Any]:
-    """The cells of an Arrow array; dates and durations as text: they are no numbers of seconds."""
+    """The cells of an Arrow array; dates and durations as text, like `cells_of`."""
     from pyarrow import types
 
     if types.is_temporal(column.type):

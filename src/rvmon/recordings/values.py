@@ -1,4 +1,4 @@
-"""Text and JSON values to the values that a declared kind takes."""
+"""Conversion of texts and JSON values to values of a declared kind."""
 
 from __future__ import annotations
 
@@ -17,11 +17,15 @@ TRUE_WORDS = frozenset({"true", "True", "TRUE", "1"})
 FALSE_WORDS = frozenset({"false", "False", "FALSE", "0"})
 
 _ABSENT = frozenset({"na", "n/a", "<na>", "none", "null", "nil"})
-"""The texts that programs write for a missing value: unknown, or no update."""
+"""The texts that programs write for a missing value. They are errors, with a hint: they could mean
+unknown or no update."""
 
 
 def scalar_of_text(text: str, kind: Kind) -> Scalar:
-    """Read a cell, which is not empty; `nan` (any case) reads as NaN, but for labels.
+    """Read a cell that is not empty; `nan` (in any case) is NaN, except for labels.
+
+    Raises:
+        TraceError: the text is no value of the kind, or a number is too large.
 
     >>> [scalar_of_text("1.0", kind) for kind in (Kind.BOOL, Kind.INT, Kind.REAL, Kind.LABEL)]
     [True, 1, 1.0, '1.0']
@@ -33,13 +37,13 @@ def scalar_of_text(text: str, kind: Kind) -> Scalar:
             if text in FALSE_WORDS:
                 return False
         case Kind.INT | Kind.REAL:
-            # Python reads 1_000 as a number; no recording means it.
+            # Python reads 1_000 as a number; in a recording it is an error.
             try:
                 if "_" not in text:
                     return _whole_of(text) if kind is Kind.INT else double_of(text)
             except TraceError:
                 raise
-            except ValueError:  # it may be NaN
+            except ValueError:  # may be NaN, or 1.0 for an integer: see below
                 pass
             if kind is Kind.INT and is_whole(text):
                 most = sys.get_int_max_str_digits()
@@ -68,11 +72,11 @@ def _whole_of(text: str) -> int:
 
 
 def double_of(text: str) -> float:
-    """A number as a double; infinite only if it is called so.
+    """Read a number as a double; infinite only if the text says so in words.
 
     Raises:
         ValueError: the text is no number.
-        TraceError: it is a number that is too large.
+        TraceError: the number is too large for a double.
 
     >>> double_of("2.5"), double_of("-inf")
     (2.5, -inf)
@@ -87,16 +91,16 @@ _CLASSES = {Kind.BOOL: bool, Kind.INT: int, Kind.REAL: float, Kind.LABEL: str}
 
 _LARGEST = 1 << 63
 
-_EXACT = 1 << 53  # floats up to here are the whole numbers that they stand for
+_EXACT = 1 << 53  # up to here, a float represents every integer exactly
 
 
 def fits(value: Any, kind: Kind) -> bool:
-    """Whether a value is one of its kind, or unknown."""
+    """Whether a value is of its kind, or `None` (unknown)."""
     return value is None or value.__class__ is _CLASSES[kind]
 
 
 def plain(cell: Any) -> Any:
-    """A cell as Python has it: NumPy's scalars as numbers and texts, pandas' NA as `None`."""
+    """Convert a cell to a plain Python value: NumPy scalars to numbers or texts, NA to `None`."""
     if cell.__class__ in (float, bool, int, str) or cell is None:
         return cell
     if type(cell).__name__ == "NAType":
@@ -104,17 +108,17 @@ def plain(cell: Any) -> Any:
     item = getattr(cell, "item", None)
     if callable(item) and getattr(cell, "ndim", 1) == 0:
         made = item()
-        # Dates and durations would become numbers of some unit of theirs.
+        # Dates and durations would become numbers in a unit that depends on their type.
         return cell if getattr(cell.dtype, "kind", "") in "mM" or hasattr(made, "item") else made
     return cell
 
 
 def as_declared(value: Any, kind: Kind) -> Any:
-    """A value as its kind takes it; one that the kind does not take, as it is.
+    """Convert a value to its declared kind if it has a value of that kind; else leave it.
 
     Returns:
-        0 and 1 as truth values, whole floats as the whole numbers that they are, whole numbers as
-        reals; NaN where the kind has none as `None`, which is as unknown.
+        For `bool`: 0 and 1 as truth values. For `int`: whole floats (up to 2**53) as integers. For
+        `real`: integers as floats. NaN becomes `None` (unknown) for the kinds that have no NaN.
 
     >>> as_declared(1.0, Kind.BOOL), as_declared(3.0, Kind.INT), as_declared(3, Kind.REAL)
     (True, 3, 3.0)

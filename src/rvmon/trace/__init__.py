@@ -1,4 +1,4 @@
-"""Time, samples and recordings: the input of monitors, and the schema of its names."""
+"""Time, samples and recordings: what monitors read, and the schema of its names."""
 
 READINGS_OF_NAN = ("unknown", "no update")
-"""The meanings of NaN: the name became unknown, or was not updated."""
+"""The two meanings of NaN: the name became unknown, or it was not updated."""

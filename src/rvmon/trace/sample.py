@@ -55,7 +55,7 @@ class Health:
 
     @property
     def is_doubt(self) -> bool:
-        """Whether it is a warning that the recording may be misread."""
+        """Whether the finding warns that the recording may be misread."""
         return self.kind in _DOUBTS
 
 
@@ -63,7 +63,10 @@ Scalar = bool | int | float | str | None  # a signal's value; `None` makes the s
 Payload = Mapping[str, Scalar]  # the fields of one occurrence of an event
 
 Value = Scalar | Payload | tuple[Payload, ...]
-"""The value of a name in a sample: of a signal its value; of an event `True`, or its payloads."""
+"""The entry of a name in a sample: the value of a signal; for an event a truth value or payloads.
+
+`None` is unknown: the signal has no known value, or the event may have occurred.
+"""
 
 
 def payloads_of(value: Value) -> tuple[Payload | None, ...]:
@@ -76,9 +79,9 @@ def payloads_of(value: Value) -> tuple[Payload | None, ...]:
 
 
 def calculated(operation: Callable[..., float], *values: Scalar) -> float | None:
-    """The result of a numeric operation; `None` if an operand is unknown or it is not finite.
+    """The result of a numeric operation; `None` if it has no finite value or an operand is unknown.
 
-    The latter includes bit operations on numbers that are not integers.
+    A bit operation on numbers that are not integers has no value either.
     """
     for value in values:
         if value is None or isinstance(value, str):
@@ -133,7 +136,7 @@ class Recording(Protocol):
 
     @property
     def end(self) -> int | None:
-        """The instant at which the recording ended, ticks; `None` if it does not say so."""
+        """The instant at which the recording ended, ticks; `None` if the recording has none."""
 
     def __iter__(self) -> Iterator[Sample]: ...
 

@@ -1,6 +1,7 @@
 """The schema of a trace: the declarations of a specification that readers need.
 
-It also binds names to topics and fields of recorded messages, and defines values for "no update".
+A schema also binds names to topics and fields of recorded messages, and defines which values mean
+"no update".
 """
 
 from __future__ import annotations
@@ -18,14 +19,14 @@ from rvmon.trace import READINGS_OF_NAN
 
 
 class Clock(StrEnum):
-    """The stamp of a message that counts: that of the log, or that in its header."""
+    """Which stamp of a message is its time: that of the log, or that in its header."""
 
     LOG = "log"
     HEADER = "header"
 
 
 class Named(Struct, frozen=True):
-    """An element of an array by its name, which is in a parallel array or in the element."""
+    """An array element chosen by name; a parallel array or the element itself holds the name."""
 
     name: str
 
@@ -105,7 +106,7 @@ class Bound(Struct, frozen=True):
     fields: Mapping[str, Term] = field(default_factory=dict)
     # of a signal of labels, the label by recorded number or text; empty: the text itself
     labels: Mapping[str, str] = field(default_factory=dict)
-    # the stamp that counts; `None`: the one chosen for the whole recording
+    # the stamp that is the time of a message; `None`: the one chosen for the whole recording
     clock: Clock | None = None
     # whether a message with the same value as the previous one is no update
     on_change: bool = False
@@ -117,21 +118,21 @@ class Binding(Struct, frozen=True):
     """The sources of declared names in recorded messages."""
 
     bounds: Mapping[str, Bound] = field(default_factory=dict)  # by declared name, its source
-    clock: Clock = Clock.LOG  # the stamps that count
+    clock: Clock = Clock.LOG  # the stamps that are the time of messages
     # by type, texts of message definitions, for recordings without them
     definitions: Mapping[str, str] = field(default_factory=dict)
     robot: str = ""  # the replacement of `*` in the names of topics; "": taken from the recording
 
 
 BY_NAME = Binding()
-"""The default binding: names are matched with topics and fields, log stamps count."""
+"""The default binding: names are matched with topics and fields, and times are those of the log."""
 
 
 class Gaps(Struct, frozen=True):
     """Values that mean "no update"."""
 
     no_update: bool | int | float | str | None = None  # such a value; `None`: there is none
-    nan: bool = False  # whether NaN means it
+    nan: bool = False  # whether NaN means "no update"
 
     def __bool__(self) -> bool:
         return self.nan or self.no_update is not None
@@ -172,7 +173,7 @@ def gaps_of(nan: str, no_update: Any) -> Gaps:
         no_update: a value, also of NumPy; NaN is the same as `nan="no update"`.
 
     Raises:
-        UnknownNameError: there is no such reading of NaN, or no cell can have such a value.
+        UnknownNameError: `nan` is no known reading, or no cell can have the value `no_update`.
     """
     if nan not in READINGS_OF_NAN:
         known = " or ".join(f"nan={one!r}" for one in READINGS_OF_NAN)
@@ -201,8 +202,8 @@ class Stamps(Struct, frozen=True):
 
     column: str  # the name of the column, or of the field in JSON lines
     unit: str  # `s`, `ms`, `us`, `ns`, or `iso` for dates and times of ISO 8601
-    is_stated: bool = False  # whether the user named the unit, so that it is not a default
-    pattern: str = ""  # of dates that are not ISO 8601, for `datetime.strptime`
+    is_stated: bool = False  # whether the user named the unit; otherwise it is a default
+    pattern: str = ""  # the format of dates that are not ISO 8601, for `datetime.strptime`
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -220,14 +221,17 @@ class Schema:
     binding: Binding = BY_NAME  # the topics and fields of messages by name
     # the unit of each declared name (`event.field` for a field) that has one
     units: Mapping[str, str] = dataclasses.field(default_factory=dict)
-    # a reader's plan by the last header as it is written: many recordings have the same
+    # cache: the layout of the last CSV header by its raw bytes, as many recordings share a header
     layouts: dict[bytes, Any] = dataclasses.field(
         default_factory=dict, init=False, repr=False, compare=False
     )
 
     @property
     def aliases(self) -> dict[str, str]:
-        """The declared name by column, where it has another one; what no longer counts has none.
+        """The declared name by column, for columns with another name.
+
+        A declared name that is mapped to another column maps to "": a column of that name is no
+        longer read for it.
 
         >>> Schema({}, {}, columns={"speed": "Speed [m/s]"}).aliases
         {'speed': '', 'Speed [m/s]': 'speed'}

@@ -41,13 +41,14 @@ _SHOWN.maxstring = 60
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 _EPOCHS = {"ms": (1e11, 1e14), "us": (1e14, 1e17), "ns": (1e17, 1e20)}
-"""The ranges in which a number is probably an instant since 1970 in that unit, not in seconds."""
+"""By unit, the range of numbers that are probably instants since 1970 in that unit, not in s."""
 
 
 def stamps_of(text: str) -> Stamps:
     """Parse `COLUMN` or `COLUMN:UNIT`; without a unit, a column `…_ns` is in nanoseconds.
 
-    `SECONDS+NANOSECONDS` names two columns to be added; a unit may also be a pattern of dates.
+    `SECONDS+NANOSECONDS` names two columns to be added. A pattern of dates (`:%…`) can stand in
+    place of the unit.
 
     >>> stamps_of("stamp:ms")
     Stamps(column='stamp', unit='ms', is_stated=True, pattern='')
@@ -67,7 +68,7 @@ def ticks_of_cell(text: str, stamps: Stamps) -> int:
     """Read a stamp of a text file exactly.
 
     Raises:
-        TraceError: it is none in that unit, or out of range.
+        TraceError: the text is no stamp in that unit, or is out of range.
 
     >>> ticks_of_cell("1.5", stamps_of("t:ms"))
     1500000
@@ -94,7 +95,7 @@ def ticks_of_cell(text: str, stamps: Stamps) -> int:
 
 
 def is_whole(text: str) -> bool:
-    """Whether the text is a whole number, however many digits it has."""
+    """Whether the text is a whole number, of any length."""
     return re.fullmatch(r"\s*[+-]?\d+\s*", text) is not None
 
 
@@ -106,7 +107,7 @@ def ticks_of_stamp(stamp: Any, stamps: Stamps) -> int:
         stamps: gives the unit.
 
     Raises:
-        TraceError: it is no stamp in that unit, or out of range.
+        TraceError: the value is no stamp in that unit, or is out of range.
 
     >>> ticks_of_stamp(1_500, stamps_of("t:us")), ticks_of_stamp(0.25, stamps_of("t:ms"))
     (1500000, 250000)
@@ -149,7 +150,7 @@ def _seconds(stamp: float | Fraction | Decimal, unit: str) -> Fraction:
 
 
 def ticks_of_iso(text: str) -> int:
-    """Read a date and time of ISO 8601 exactly as ticks since 1970; the default offset is UTC.
+    """Read an ISO 8601 date and time exactly as ticks since 1970; the default offset is UTC.
 
     >>> ticks_of_iso("1970-01-01T02:00:00.000000001+02:00")
     1
@@ -188,11 +189,11 @@ def _other_unit(stamp: object, stamps: Stamps) -> str:
     return ""
 
 
-DEFAULT_COLUMNS = ("t", "t_ns")  # the columns of stamps where none was named
+DEFAULT_COLUMNS = ("t", "t_ns")  # the columns of stamps if the user names none
 
 
 def stamps_among(names: Collection[str], schema: Schema) -> Stamps:
-    """The column of stamps of a recording that has these columns.
+    """Find the column of stamps among the columns of a recording.
 
     Raises:
         TraceError: there is none, or there are two.

@@ -33,7 +33,7 @@ UNIT_WORDS = {"s": "seconds", "ms": "milliseconds", "us": "microseconds", "ns": 
 """The names of the units of stamps."""
 
 _DATES_FROM = 946_684_800 * TICKS_PER_SECOND
-"""The year 2000: later stamps count from 1970, as no clock of a robot runs so long."""
+"""The year 2000. Later stamps are counted from 1970, as no clock of a robot runs that long."""
 
 _COARSE = 2.0**23  # from this many seconds on, the spacing of floats exceeds a tick
 _FAR = 4e9  # a bound in seconds that is within `TIME_LIMIT`
@@ -53,7 +53,7 @@ def ticks_of_seconds(seconds: float | Fraction | Decimal) -> int:
             digits are exact.
 
     Raises:
-        TraceError: it is no number, not finite or beyond `TIME_LIMIT` ticks.
+        TraceError: the value is no number, not finite or beyond `TIME_LIMIT` ticks.
 
     >>> ticks_of_seconds(0.1), ticks_of_seconds(1700000015.95)
     (100000000, 1700000015950000000)
@@ -78,7 +78,7 @@ def ticks_of_seconds(seconds: float | Fraction | Decimal) -> int:
 
 
 def exact(number: float | Fraction | Decimal, unit: str) -> float | Fraction | Decimal:
-    """The exact value of a stamp in a unit: of a float coarser than a tick its decimal."""
+    """The exact value of a stamp; a float coarser than a tick stands for its shortest decimal."""
     coarse = isinstance(number, float) and math.ulp(number) * TICKS_PER_UNIT[unit] > 1
     return Decimal(repr(number)) if coarse else number
 
@@ -87,7 +87,7 @@ def whole_ticks(t: Any) -> int:
     """A number of ticks, also of NumPy, as a plain integer.
 
     Raises:
-        TraceError: it is no whole number, or beyond `TIME_LIMIT`.
+        TraceError: the value is no whole number, or beyond `TIME_LIMIT`.
 
     >>> whole_ticks(5)
     5
@@ -105,7 +105,7 @@ def whole_ticks(t: Any) -> int:
 
 
 def _shown(number: float | Decimal) -> str:
-    """A number for a message; a huge integer is not written out."""
+    """A number as text for a message; a huge integer is not written out."""
     long = isinstance(number, int) and abs(number) > 10**30
     return "beyond 10**30" if long else repr(number)
 
@@ -153,7 +153,7 @@ def ticks_of_text(text: str, unit: str = "s") -> int:
         raise TraceError(f"time `{shown}` is not finite")
     # An exponent is bounded before it becomes digits: 1e999999999 must not fill the memory.
     if number.adjusted() <= 18:
-        # Such a small number is below a tick in any unit; its fraction would fill the memory.
+        # A number this small is below a tick in any unit; its exact fraction would fill the memory.
         exact = Fraction(0) if number.adjusted() < -30 else Fraction(number)
         ticks = round(exact * TICKS_PER_UNIT[unit])
         if abs(ticks) < TIME_LIMIT:
@@ -194,7 +194,7 @@ def format_instant(t: int, origin: int) -> str:
 
 
 def format_stamp(t: int) -> str:
-    """An instant (ticks) as stamped in its recording; with the date if it is counted from 1970.
+    """An instant (ticks) as stamped in its recording, with the date if it is counted from 1970.
 
     >>> format_stamp(14_250_000_000), format_stamp(1_700_000_014_250_000_000)
     ('14.25 s', '1700000014.25 s, 2023-11-14 22:13:34 UTC')
@@ -206,7 +206,7 @@ def format_stamp(t: int) -> str:
 
 
 def format_stamped(t: int, origin: int) -> str:
-    """An instant relative to `origin`, with its stamp if that differs; both in ticks.
+    """An instant relative to `origin`, with its stamp if the stamp differs; both in ticks.
 
     >>> format_stamped(14_250_000_000, 5_000_000_000), format_stamped(14_250_000_000, 0)
     ('9.25 s (stamp 14.25 s)', '14.25 s')
