@@ -93,7 +93,7 @@ def run_lines(network: Network, run: Run) -> Iterator[str]:
 _ENDINGS = {
     Ending.DEADLOCK: "no edge can be taken any more",
     Ending.TIME_LOCK: "time stops here: no edge can be taken, and time may not pass",
-    Ending.IDLE: "it may stay here without end",
+    Ending.IDLE: "it may stay here forever",
     Ending.LOOP: "and round again",
     Ending.ZENO_LOOP: "and round again, though time does not pass on (a Zeno loop)",
 }
@@ -207,11 +207,11 @@ def extreme_text(extreme: Extreme) -> str:
         return f"{term}: {extreme.remark}"
     if not extreme.exact:
         side = "above" if largest else "below"
-        why = extreme.remark or "no bound up to there"
-        return f"{term} comes to {value:,}, perhaps {side} it ({why})"
+        why = extreme.remark or "no bound was found up to there"
+        return f"{term} reaches {value:,}, perhaps {side} it ({why})"
     if not extreme.attained:
         side = "below" if largest else "above"
-        return f"{term} stays {side} {value:,}, but comes as near to it as one likes"
+        return f"{term} stays {side} {value:,}, but comes arbitrarily close to it"
     return f"{term} is at {'most' if largest else 'least'} {value:,}"
 
 

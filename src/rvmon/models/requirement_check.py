@@ -29,9 +29,9 @@ from rvmon.models.search.native_search import seek
 from rvmon.models.search.search_plan import Seek, Sought
 from rvmon.trace.time import TICKS_PER_UNIT
 
-MET_IN_THE_END = "none stays open for ever while time passes on"
-OPEN_FOR_EVER = "an attempt stays open for ever"
-UNDECIDED_IN_THE_END = "none fails it; that it is met in the end, a query such as A<> decides"
+MET_IN_THE_END = "no attempt stays open forever while time passes"
+OPEN_FOR_EVER = "an attempt stays open forever"
+UNDECIDED_IN_THE_END = "no run fails it; a query such as A<> decides whether it is met in the end"
 """Remarks on a requirement without a deadline that no finite run violates."""
 
 
@@ -105,7 +105,7 @@ def _problem(
     alphabet = alphabet_of(obligation.required)
     trigger = obligation.trigger
     if mtl.looks_back(obligation.required):
-        raise NotExpressibleError("it looks back from what lies ahead")
+        raise NotExpressibleError("its consequent refers to the past")
     if trigger is None:
         raise NotExpressibleError("it is evaluated at the end of a trace")
     try:
@@ -160,7 +160,7 @@ def _observe(
     runs = {name: _reached(problem, goal, meter) for name, goal in sought.items()}
     holds: bool | None = runs["failing"] is None
     if holds and _reached(problem, problem.lost, meter) is not None:
-        raise NotExpressibleError("its monitor is moved by time itself")
+        raise NotExpressibleError("its monitor changes at every instant")
     remark = ""
     if meter.stopped and holds:
         holds, remark = None, f"not decided: {meter.stopped}"

@@ -36,9 +36,9 @@ from rvmon.models.requirement_propositions import (
 )
 
 MOST_STEPS = 20
-"""A monitor that still moves after so many steps at one instant is moved by time itself."""
+"""A monitor that still moves after so many steps at one instant changes at every instant."""
 
-_LOST = -2  # in place of a location: the monitor is moved by time itself, and is not followed
+_LOST = -2  # in place of a location: the monitor changes at every instant, and is not followed
 
 
 class Phase(Enum):

@@ -108,10 +108,10 @@ def test_a_requirement_that_no_run_triggers_is_vacuous():
     ("requirement", "holds", "remark"),
     [
         ("upon pressed then eventually dark", True, "while time passes"),
-        ("upon pressed then eventually raised", False, "for ever"),
-        ("upon dark then eventually pressed", False, "for ever"),
+        ("upon pressed then eventually raised", False, "forever"),
+        ("upon dark then eventually pressed", False, "forever"),
         ("upon pressed then (lit until dark)", True, "while time passes"),
-        ("upon start then eventually pressed", False, "for ever"),
+        ("upon start then eventually pressed", False, "forever"),
         ("upon pressed then always level <= 2", True, ""),
         ("upon pressed then always eventually dark", True, "in the end"),
     ],

@@ -146,7 +146,7 @@ def _ranked(name: syntax.Expression, scope: sc.Scope, resolver: Resolver) -> Ite
 def _warn_of_range(variable: Variable, item: syntax.Named, findings: Findings) -> None:
     count = variable.high - variable.low + 1
     if count > WIDE:
-        message = f"`{item.name}` has {count:,} values: each that it takes makes states of its own"
+        message = f"`{item.name}` has {count:,} values; each one that occurs adds states"
         fix = "give it the range that it needs, such as int[0, 10]"
         findings.add(finding("TA005", message, item.span, fix, severity=Severity.WARNING))
 

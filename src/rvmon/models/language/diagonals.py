@@ -157,8 +157,8 @@ def difference(
 ) -> ex.Expression:
     """`first − second` compared with a number; refused without `diagonals`."""
     if diagonals is None:
-        fix = "ask for it with --query, for which edges are made to keep it up"
-        message = "two clocks are compared where edges cannot keep their difference up"
+        fix = "ask for it with --query, which adds edges that keep track of it"
+        message = "two clocks are compared where edges cannot keep track of their difference"
         raise model_error("TA008", message, span, fix)
     return diagonals.compare(first, second, op, number, span)
 
@@ -181,7 +181,7 @@ def _values(edge: Edge, diagonal: Diagonal) -> dict[int, int]:
             is_direct = any(one is reset for one in edge.updates)
             if not (is_direct and isinstance(reset.value, ex.Constant)):
                 fix = "set it to a number, in the update of the edge itself"
-                message = "a clock that is compared with another one is set to what is computed"
+                message = "a clock that is compared with another one is set to a computed value"
                 raise model_error("TA008", message, edge.span, fix)
             found[reset.clock] = reset.value.value
     return found
@@ -243,7 +243,7 @@ def _refusal(message: str, span: Span | None) -> Exception:
 
 
 def _holds(bound: ex.ClockCompare, value: int) -> bool:
-    assert isinstance(bound.bound, ex.Constant), "looked at before"
+    assert isinstance(bound.bound, ex.Constant), "checked by the caller"
     return value >= bound.bound.value + (bound.op is ex.ClockOp.GT)
 
 
@@ -259,13 +259,14 @@ def _guarded(
             continue
         value = resets[-1].value
         if not isinstance(value, ex.Constant) or resets[-1] not in edge.updates:
-            raise _refusal("an invariant bounds a clock from below that is computed", edge.span)
+            message = "an invariant bounds from below a clock that is set to a computed value"
+            raise _refusal(message, edge.span)
         if not _holds(bound, value.value):
             return None
     if added and edge.sync is not None:
         channel = channels[edge.sync.slot.first]
         if channel.urgent or (channel.broadcast and not edge.sync.sends):
-            message = "an invariant bounds a clock from below behind an urgent or broadcast channel"
+            message = "an invariant bounds a clock from below after an urgent or broadcast channel"
             raise _refusal(message, edge.span)
     guard = replace(edge.guard, clocks=(*edge.guard.clocks, *added))
     return replace(edge, guard=guard)

@@ -60,8 +60,8 @@ class Resolver:
                     return location
                 return symbols.value_of(self.symbol(written, scope), written.span)
             case syntax.Rate(_, span):
-                fix = "a rate stands in an invariant: x' == 2, alone or joined by &&"
-                raise model_error("TA009", "the rate of a clock stands here", span, fix)
+                fix = "write it in an invariant: x' == 2, alone or joined by &&"
+                raise model_error("TA009", "the rate of a clock cannot be used here", span, fix)
             case syntax.Unary(op, operand, span):
                 return operations.unary(op, self.expression(operand, scope), span)
             case syntax.Binary(op, left, right, span):
@@ -95,7 +95,7 @@ class Resolver:
                 inner = self.expression(body, scope)
                 return ex.PathFormula(op, inner, self.limit(bound, scope), until)
             case syntax.LeadsTo(_, _, _, span):
-                message = "`-->` can only stand outermost"
+                message = "`-->` is only allowed at the outermost level"
                 raise model_error("TA020", message, span, "write A[] (p imply A<> q)")
             case (
                 syntax.Assuming()
@@ -104,7 +104,7 @@ class Resolver:
                 | syntax.Simulation()
                 | syntax.Extremes()
             ):
-                raise model_error("TA020", "this can only stand outermost", written.span)
+                raise model_error("TA020", "only allowed at the outermost level", written.span)
             case _:
                 assert_never(written)
 

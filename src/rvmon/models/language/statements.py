@@ -21,7 +21,7 @@ def number(written: syntax.Expression, scope: sc.Scope, resolver: Resolver) -> e
     value = resolver.expression(written, scope)
     diagonals = resolver.diagonals
     if not is_discrete(value) or (diagonals is not None and diagonals.are_read(value)):
-        fix = "set variables by numbers and variables only"
+        fix = "set variables from numbers and variables only"
         raise model_error("TA009", "a clock's state is written to a variable", written.span, fix)
     return value
 

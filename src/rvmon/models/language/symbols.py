@@ -190,7 +190,7 @@ def value_of(symbol: sc.Symbol, span: Span) -> ex.Expression:
         case sc.FunctionSymbol():
             raise model_error("TA004", "a function is no value", span, f"call it: {span.text}(…)")
         case sc.PlacedSymbol() | sc.TypeSymbol():
-            fix = "channels stand in synchronisations, types in declarations"
+            fix = "channels belong in synchronisations, types in declarations"
             raise model_error("TA004", f"`{span.text}` is no value", span, fix)
         case _:
             assert_never(symbol)

@@ -27,7 +27,7 @@ _COMPUTING: dict[str, Reason] = _DECLARING | dict.fromkeys(
 )
 _UPDATING: dict[str, Reason] = _COMPUTING | dict.fromkeys(
     ("if", "else", "for", "while", "do", "return"),
-    ("statements stand in functions only", "write a function, and call it in the update"),
+    ("statements are only allowed in functions", "write a function, and call it in the update"),
 )
 _ASKING: dict[str, Reason] = {
     **dict.fromkeys(

@@ -85,7 +85,7 @@ def read_xml(source: Source) -> Element:
         reader.parser.Parse(reader.data, True)
     except expat.ExpatError as error:
         place = reader.position(reader.parser.ErrorByteIndex)
-        message = f"no well-formed XML: {expat.errors.messages[error.code]}"
+        message = f"not well-formed XML: {expat.errors.messages[error.code]}"
         raise model_error("TA018", message, Span(source, place, place)) from None
     (root,) = reader.around.children
     return root

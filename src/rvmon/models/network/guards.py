@@ -85,7 +85,7 @@ def refuse_changes(expression: ex.Expression, span: Span) -> None:
     for part in parts_of(expression):
         if isinstance(part, ex.Invoke) and part.function.changes:
             message = f"`{part.function.name}` changes variables or clocks"
-            fix = "call it in an update; conditions are only looked at"
+            fix = "call it in an update; conditions must not change anything"
             raise model_error("TA009", message, span, fix)
 
 

@@ -173,7 +173,7 @@ class Rules:
                 now = self.act(now, step.action)
                 visited.append(now)
             if (now.locations, now.values) != (step.position.locations, step.position.values):
-                raise InvalidRunError("the run is elsewhere")
+                raise InvalidRunError("the position of the run is wrong")
         return visited
 
     def _is_possible(self, now: Configuration, action: Action) -> bool:
@@ -248,7 +248,7 @@ class Rules:
         (sender, first), *others = action.edges
         if first.sync is None:
             if others:
-                raise InvalidRunError("an edge without channel has company")
+                raise InvalidRunError("an edge without a channel is taken with others")
             return
         if not first.sync.sends:
             raise InvalidRunError("the first edge does not send")

@@ -88,7 +88,7 @@ def trajectories(
     random, runs = _random(network, query, seed), _Runs(watch)
     formula = query.formula
     if not isinstance(formula, Simulation):
-        raise model_error("TA020", "this asks for no runs", query.span)
+        raise model_error("TA020", "this query does not simulate runs", query.span)
     space = Space(network, GRID)
     read = [None if term.clock is not None else evaluator(term.value) for term in formula.terms]
 
@@ -120,7 +120,7 @@ def _random(network: Network, query: Query, seed: int) -> Random:
     if network.has_split_edges:
         fix = "compare clocks with numbers, without `or`; or ask whether it can happen: E<> p"
         where = "clocks under `or`, or their differences, split edges"
-        raise model_error("TA020", f"the odds are not known where {where}", query.span, fix)
+        raise model_error("TA020", f"probabilities are undefined where {where}", query.span, fix)
     return Random(seed)  # noqa: S311 - repeatable, not secret
 
 
@@ -146,7 +146,7 @@ def sample(
         case Mean() as mean:
             return _mean(network, query, mean, random, runs)
         case _:
-            raise model_error("TA020", "this asks for no probability", query.span)
+            raise model_error("TA020", "this query asks for no probability or mean", query.span)
 
 
 class _Runs:
@@ -176,7 +176,7 @@ def _chance(network: Network, query: Query, chance: Chance, random: Random, runs
         fix = "ask whether one is reachable: E<> deadlock"
         raise model_error("TA020", reason, query.span, fix)
     if has_paths(chance.body):
-        reason = "a random run is evaluated alone, and this formula speaks of other runs"
+        reason = "a random run is evaluated alone, and this formula refers to other runs"
         fix = "write a condition on the state: Pr[<=T](<> p)"
         raise model_error("TA020", reason, query.span, fix)
     meets = chance.op is PathOp.FINALLY

@@ -61,7 +61,7 @@ def extremes(
             runs leaves the range of a variable.
     """
     if not isinstance(query.formula, Extremes):
-        raise model_error("TA020", "this asks for no extreme value", query.span)
+        raise model_error("TA020", "this query does not ask for extreme values", query.span)
     check_start(network)
     terms = (term.clock for term in query.formula.terms if term.clock is not None)
     compared = (comparison.clock for comparison in compares_of(query.formula.where))
@@ -77,7 +77,7 @@ class _Climb:
     def __init__(
         self, network: Network, query: Query, term: Term, largest: bool, meter: Meter
     ) -> None:
-        assert isinstance(query.formula, Extremes), "looked at before"
+        assert isinstance(query.formula, Extremes), "checked by the caller"
         self._network = network
         self._query = query
         self._where = query.formula.where
@@ -93,7 +93,7 @@ class _Climb:
         run = self._reach(self._where)
         if run is None:
             stopped = self._meter.stopped
-            remark = f"not decided: {stopped}" if stopped else "no state counts"
+            remark = f"not decided: {stopped}" if stopped else "no state meets the condition"
             return self._told(None, run, attained=False, exact=not stopped, remark=remark)
         # Invariant: some run reaches `low`, and nothing beyond `high` is searched for. `proved`
         # tells whether `high` bounds all values.
@@ -103,7 +103,7 @@ class _Climb:
             # Strides double, so that a value of n takes about 2 log n searches instead of n.
             probe = min(low + stride, high) - 1
             if self._grows(run):
-                remark = "grows without bound: time may pass for ever there"
+                remark = "grows without bound: time may pass forever there"
                 return self._told(None, run, attained=False, exact=True, remark=remark)
             further = self._reach(self._beyond(probe))
             if further is None:

@@ -79,7 +79,7 @@ def compares_in(formula: nta.QueryFormula) -> Iterator[ex.ClockCompare]:
 def _remark(run: Run | None) -> str:
     match run:
         case Run(ending=Ending.ZENO_LOOP):
-            return "only by a Zeno loop: it goes round without end while time does not pass"
+            return "only by a Zeno loop, which repeats forever in a bounded time"
         case Run(ending=Ending.TIME_LOCK):
             return "time stops here: no edge can be taken, and time may not pass"
         case _:
@@ -104,10 +104,11 @@ def _search(question: _Question, query: nta.Query) -> _Found:
                 check_linear(ex.PathFormula(ex.PathOp.EVENTUALLY, left), query.span)
         case nta.Extremes():
             fix = "`rvmon verify` answers it, as does `extremes`"
-            raise model_error("TA020", "a value is no decision", query.span, fix)
+            raise model_error("TA020", "this query gives a value, not a decision", query.span, fix)
         case nta.Chance() | nta.Mean() | nta.Simulation():
             fix = "simulate it: `rvmon verify` does, as does `sample`"
-            raise model_error("TA020", "statistics are no decision", query.span, fix)
+            message = "a statistical query gives an estimate, not a decision"
+            raise model_error("TA020", message, query.span, fix)
         case formula if guards.is_linear(formula):
             return _on_runs(question, query, formula)
     match query.formula:
@@ -151,7 +152,7 @@ def _search(question: _Question, query: nta.Query) -> _Found:
         case formula if guards.has_paths(formula):
             return _at_start(question, formula)
         case _:
-            fix = "begin it with E<>, A[], A<> or E[], or write p --> q"
+            fix = "start it with E<>, A[], A<> or E[], or write p --> q"
             raise model_error("TA020", "a query refers to runs", query.span, fix)
 
 

@@ -118,9 +118,9 @@ automaton B {{ location b start b edge b -> b on c? do {} }}
     [
         (SYNC.format("x - y > 1", "y = 0"), "set by edges that synchronise"),
         ("clock x, y int[0,3] n automaton A { location a start a "
-         "edge a -> a when x - y > 1 do x = n }", "set to what is computed"),
+         "edge a -> a when x - y > 1 do x = n }", "set to a computed value"),
         ("clock x, y void f() { x = 0; } automaton A { location a start a "
-         "edge a -> a when x - y > 1 do f() }", "set to what is computed"),
+         "edge a -> a when x - y > 1 do f() }", "set to a computed value"),
         ("clock x, y automaton A { location a start a edge a -> a when x + y > 1 }",
          "a sum of clocks"),
         ("clock x, y int[0,3] n automaton A { location a start a edge a -> a when x - y > n }",
@@ -170,7 +170,7 @@ def test_edges_that_set_the_same_clock_may_synchronise():
 
 def test_figures_are_refused_where_edges_are_split():
     network = loads_network(MODEL.format("E<> A.c"))
-    with pytest.raises(ModelError, match="keep their difference up"):
+    with pytest.raises(ModelError, match="keep track of their difference"):
         signal_on(network, "far", "x - y > 3")
-    with pytest.raises(ModelError, match="odds are not known"):
+    with pytest.raises(ModelError, match="probabilities are undefined"):
         sample(network, asked_on(network, "Pr[<=9](<> A.c)")[1])

@@ -144,7 +144,7 @@ def test_expected_values():
         ("E<> (Pr[<=2](<> A.heads))", "this form of a statistical query", "Pr[<=T](<> p)"),
         ("Pr[<=2](<> deadlock)", "a lack of moves", "E<> deadlock"),
         ("Pr[<=2](<> A.heads and not deadlock) >= 0.5", "a lack of moves", "E<> deadlock"),
-        ("Pr[<=2](<> EF A.heads)", "speaks of other runs", "Pr[<=T](<> p)"),
+        ("Pr[<=2](<> EF A.heads)", "refers to other runs", "Pr[<=T](<> p)"),
     ],
 )
 def test_what_has_no_figure_is_refused_with_the_reason(query, message, fix):
@@ -201,7 +201,7 @@ def test_both_ways_to_write_how_many_runs(text):
     network = loads_network(COIN)
     assert len(trajectories(network, asked_on(network, text)[1])) == 3
     assert len(trajectories(network, asked_on(network, "simulate[<=2]{n}")[1])) == 1
-    with pytest.raises(ModelError, match="asks for no runs"):
+    with pytest.raises(ModelError, match="does not simulate runs"):
         trajectories(network, asked_on(network, "E<> n > 0")[1])
 
 
@@ -209,7 +209,7 @@ def test_both_ways_to_write_how_many_runs(text):
     "query", ["Pr[<=2](<> A.heads)", "simulate 3 [<=2] {n}", "sup: n", "E[<=2; 9](max: n)"]
 )
 def test_what_asks_for_figures_is_no_decision(query):
-    with pytest.raises(ModelError, match="no decision"):
+    with pytest.raises(ModelError, match="not a decision"):
         verify(loads_network(COIN), query)
 
 

@@ -64,7 +64,7 @@ def test_a_clock_may_grow_without_bound():
 
 def test_where_nothing_counts_there_is_no_value():
     (none,) = asked(LAMP, "sup{n == 3}: n")
-    assert (none.value, none.exact, none.remark) == (None, True, "no state counts")
+    assert (none.value, none.exact, none.remark) == (None, True, "no state meets the condition")
     (cut,) = asked(LAMP, "sup: n", budget=Budget(states=4))
     assert not cut.exact
     assert "4 states were visited" in cut.remark
