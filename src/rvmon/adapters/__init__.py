@@ -1,4 +1,4 @@
-"""Adapters from middleware to live monitors, one file for each kind of source.
+"""Adapters that connect middleware to live monitors, one file per kind of source.
 
 An adapter translates messages to samples and calls `Driver.offer`; it judges nothing.
 """

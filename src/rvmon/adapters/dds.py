@@ -1,4 +1,4 @@
-"""Live data of ROS 2 over DDS, without a ROS installation; needs cyclonedds, the extra `dds`."""
+"""Live data of ROS 2 over DDS without a ROS installation; needs cyclonedds (extra `dds`)."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from rvmon.recordings.messages import Topic
 
 _DEPTH = 10_000
-"""The most messages of a topic queued in DDS; further ones are rejected, and reported as lost."""
+"""The most messages of a topic queued in DDS; further ones are rejected and reported as lost."""
 
 _AT_ONCE = 1_000  # the most messages of a topic taken before the next topic has its turn
 
-_LONG_NS = 3_600_000_000_000
+_LONG_NS = 3_600_000_000_000  # the wait is interrupted by `_wake` anyway
 
 _PREFIX = "rt/"  # the prefix of the names of ROS 2 topics in DDS
 
@@ -32,13 +32,13 @@ _MAKING = Lock()
 class DdsSource:
     """A DDS participant that passes the messages of a feed's topics to it, within `with`.
 
-    Topics are discovered when they are published. Types are those of ROS itself and of
+    Topics are discovered when they are published. Known types are those of ROS itself and of
     `definitions`.
 
     Args:
         feed: receives the messages.
         domain: the DDS domain, as in `ROS_DOMAIN_ID`.
-        definitions: by type, texts of message definitions, as in a binding.
+        definitions: the texts of message definitions by type, as in a binding.
         verdicts: the topic on which verdicts are published, as JSON in `std_msgs/msg/String`;
             `None`: they are not published.
 
@@ -55,7 +55,7 @@ class DdsSource:
         verdicts: str | None = None,
     ) -> None:
         with needed("DDS", "cyclonedds"):
-            import cyclonedds  # noqa: F401 - says what to install
+            import cyclonedds  # noqa: F401 - fails early, with the command that installs it
         self._feed = feed
         self._domain = domain
         self._definitions = tuple(sorted((definitions or {}).items()))
@@ -128,7 +128,7 @@ class DdsSource:
         self._waiting.attach(ReadCondition(reader, anything))
 
     def _lose(self, topic: Topic) -> None:
-        """Begin an outage of a topic; messages queued now were sent before it and do not end it."""
+        """Start an outage of a topic; messages already queued are older and do not end it."""
         with self._lock:
             self._losses[topic.name] = self._losses.get(topic.name, 0) + 1
             self._feed.lose(topic.name, "DDS has lost some", before=True, for_good=True)
@@ -149,7 +149,8 @@ class DdsSource:
     def _find(self) -> None:
         """Create readers for the wanted topics that are published."""
         for one in self._finder.take(N=1_000):
-            name = (getattr(one, "topic_name", None) or "").removeprefix(_PREFIX)  # no name: left
+            # The entry of a publisher that left has no name.
+            name = (getattr(one, "topic_name", None) or "").removeprefix(_PREFIX)
             if name not in self._wanted:
                 continue
             if (known := self._types.setdefault(name, one.type_name)) != one.type_name:
@@ -165,7 +166,7 @@ class DdsSource:
                 self._give_up(name, str(error))
 
     def _give_up(self, name: str, why: str) -> None:
-        """Declare the names of a topic lost for good, as a publisher cannot be received; once."""
+        """Declare the names of a topic lost for good, once, as a publisher cannot be received."""
         with self._lock:
             if name not in self._given_up:
                 self._given_up.add(name)
@@ -180,12 +181,12 @@ class DdsSource:
         if topic.fault:
             self._give_up(name, f"{kind}: {topic.fault}")
             return
-        # KeepAll: a history that keeps the last messages would silently replace others.
+        # KeepAll, because a bounded history would silently replace old messages.
         limits = Policy.ResourceLimits(_DEPTH, -1, -1)
         qos = Qos(Policy.Reliability.BestEffort, Policy.History.KeepAll, limits)
         wire = self._wire_topic(name, kind, self._definitions)
-        # Listeners only for rare events: one for each message would slow down the receiving thread
-        # of DDS until the socket drops messages unnoticed.
+        # Listen to rare events only. A listener for each message would slow down the receiving
+        # thread of DDS until the socket drops messages unnoticed.
         listener = Listener(
             on_sample_lost=lambda *_: self._lose(topic),
             on_sample_rejected=lambda *_: self._lose(topic),
@@ -209,16 +210,16 @@ class DdsSource:
         self._wake.set(True)
         self._thread.join()
         for reader, _topic in self._readers.values():
-            reader.set_listener(None)  # readers outlive their listeners, and would call freed ones
+            reader.set_listener(None)  # readers outlive their listeners and would call freed ones
 
 
 @cache
 def _idl_type(name: str, definitions: tuple[tuple[str, str], ...]) -> Any:
-    """The class by which cyclonedds packs and unpacks messages of a type.
+    """The class with which cyclonedds serialises messages of a type.
 
     Args:
         name: of the type, `package/msg/Name`.
-        definitions: (type, text) pairs of types that are not of ROS itself.
+        definitions: (type, text) pairs of the types that ROS itself does not define.
     """
     from cyclonedds.idl import make_idl_struct, types
     from rosbags.interfaces import Nodetype

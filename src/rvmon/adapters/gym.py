@@ -1,4 +1,4 @@
-"""A Gymnasium wrapper that judges requirements; needs gymnasium, the extra `gym`."""
+"""A Gymnasium wrapper that judges requirements; needs gymnasium (extra `gym`)."""
 
 from __future__ import annotations
 
@@ -20,19 +20,21 @@ _Action = TypeVar("_Action")
 
 Values = Mapping[str, Any]
 Observe = Callable[[Any, Any, Values], Values | Iterable[tuple[int, Values]]]
-"""From an observation, the action before it and its info, the values of signals and events; or
-several samples since the previous step, each with its instant, ns since the episode began."""
+"""Computes, from an observation, the action before it and its info, the values of signals and
+events; or several samples since the previous step, each with its instant (ns since the start of
+the episode)."""
 
 
 class Judged(
     gymnasium.Wrapper[_Observation, _Action, _Observation, _Action],
     gymnasium.utils.RecordConstructorArgs,
 ):
-    """Judges the episodes of an environment: each is a run, its steps are samples.
+    """Judges the episodes of an environment: an episode is a run, and its steps are samples.
 
-    After each step `info["rv"]` has `verdicts` (so far, by requirement), `decided` (the attempts
-    decided by this step) and, with `shaping`, `margins` (the robustness figures that became final).
-    The last step of an episode ends the run; `verdicts` are then those of its report.
+    After each step `info["rv"]` contains `verdicts` (so far, by requirement), `decided` (the
+    attempts decided by this step) and, with `shaping`, `margins` (the robustness figures that
+    became final). The last step of an episode ends the run; `verdicts` are then those of its
+    report.
 
     Args:
         env: any environment.
@@ -40,8 +42,8 @@ class Judged(
         observe: computes the values of a step; after `reset` the action is `None`.
         step_s: seconds per step.
         ends_on_failure: whether a failed requirement terminates the episode.
-        shaping: from the robustness figures of a step, the term added to the reward; `None`:
-            robustness is not measured.
+        shaping: computes the term added to the reward from the robustness figures of a step;
+            `None`: robustness is not measured.
 
     Raises:
         RvmonError: `step_s` is not positive.
@@ -91,7 +93,7 @@ class Judged(
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[_Observation, dict[str, Any]]:
-        """Begin an episode, and a run."""
+        """Start an episode, and a run."""
         observation, info = self.env.reset(seed=seed, options=options)
         self._begin()
         judged, _ = self._judge(self._observe(observation, None, info), over=False)
@@ -100,7 +102,7 @@ class Judged(
     def step(
         self, action: _Action
     ) -> tuple[_Observation, SupportsFloat, bool, bool, dict[str, Any]]:
-        """Take a step, and judge it."""
+        """Take a step and judge it."""
         observation, reward, terminated, truncated, info = self.env.step(action)
         self._t += self._step_ns
         values = self._observe(observation, action, info)
@@ -117,7 +119,7 @@ class Judged(
         self._decided.clear()
         for t, values in samples:
             self._monitor.step_ns(t, values)
-        # All samples may be earlier than this step: deadlines up to now are decided, too.
+        # All samples may be earlier than this step; this decides the deadlines up to now.
         self._monitor.advance_ns(self._t)
         verdicts = self._monitor.finish_ns(self._t).verdicts if over else self._monitor.verdicts
         judged: dict[str, Any] = {"verdicts": dict(verdicts), "decided": [*self._decided]}

@@ -1,4 +1,4 @@
-"""Live data as JSON objects, one per sample; also as lines from a pipe or another stream."""
+"""Live data as JSON objects, one per sample, also as lines from a pipe or another stream."""
 
 from __future__ import annotations
 
@@ -28,30 +28,31 @@ _log = logging.getLogger("rvmon.live.input")
 _UNREADABLE = "it cannot be read"
 
 _JUMP_NS = 10 * TICKS_PER_SECOND
-"""A stamp farther back than this is not late, but begins another run."""
+"""A stamp farther back than this is not late but starts a new run."""
 
 
 class JsonObjects:
     """Offers objects as samples, by the same rules as for recordings in JSON lines.
 
-    One that cannot be read may have updated any name: all names are lost between its neighbours.
+    An unreadable object may have updated any name, so all names are lost between its neighbours.
 
     Args:
         driver: receives the samples; its specification maps names.
-        clock: set to the stamps of the objects, so that one without a stamp cannot be read: nobody
-            knows when between its neighbours it came. `None`: the driver has a wall clock, by which
-            such an object is stamped on arrival.
+        clock: is set to the stamps of the objects. An object without a stamp is then unreadable,
+            because its time is unknown. `None`: the driver has a wall clock, which stamps such an
+            object on arrival.
     """
 
     def __init__(self, driver: Driver, *, clock: SimulatedClock | None = None) -> None:
-        # names that are not declared, with their numbers of occurrences
+        # undeclared names, with their numbers of occurrences
         self.ignored: Counter[str] = Counter()
         self.unread = 0  # the number of objects that could not be read
         self.driver = driver  # receives the samples
         self._clock = clock
         self._last: dict[str, int | None] = {}
         self._logged = 0
-        self._is_any_lost = False  # a lost object may have been of a robot not known yet
+        # whether an object was lost that may belong to a robot not known yet
+        self._is_any_lost = False
 
     def take(
         self, fields: Any, robot: str = "", *, wait: bool = False, is_old: bool = False
@@ -62,16 +63,16 @@ class JsonObjects:
             fields: the decoded object.
             robot: the name of the robot.
             wait: whether to wait for room; see `Driver.offer`.
-            is_old: whether it is a retained message, whose events are not of now.
+            is_old: whether it is a retained message, whose events did not occur now.
 
         Raises:
-            TraceError: it cannot be read; nothing was offered.
+            TraceError: the object cannot be read; nothing was offered.
         """
         spec = self.driver.spec
         t_ns, values = _read(fields, spec.schema, self.ignored)
         if self._clock is not None and t_ns is None:
             if not values:
-                return  # it says nothing of what is judged
+                return  # it contains no declared name
             column = DEFAULT_COLUMNS[0] if spec.schema.stamps is None else spec.schema.stamps.column
             raise TraceError(f"there is no time `{column}`: who knows when it was?")
         if is_old:
@@ -84,17 +85,17 @@ class JsonObjects:
                 self._clock.set_ns(t_ns)
         if self._is_any_lost and robot not in self._last:
             self.driver.miss(robot=robot, why=_UNREADABLE)
-        # An object without a stamp gets one when it is offered: waiting would change its time.
+        # An object without a stamp gets one when it is offered, so waiting would change its time.
         waits = wait and t_ns is not None
         is_queued = self.driver.offer(values, robot=robot, t_ns=t_ns, wait=waits)
-        if self.driver.spec is not spec:  # replaced meanwhile, perhaps by one with other names
+        if self.driver.spec is not spec:  # replaced meanwhile, perhaps with other names
             self.driver.miss(robot=robot, why=_UNREADABLE)
-        # Robots beyond the limit are not remembered, lest the table grow without bound.
+        # Robots beyond the limit are not remembered, so that the table stays bounded.
         if is_queued or robot in self._last or len(self._last) < self.driver.most_robots:
             self._last[robot] = t_ns
 
     def _log_ignored(self) -> None:
-        """Log, for a new undeclared name, the declared one that was probably meant."""
+        """Log, for each new undeclared name, the declared name that was probably meant."""
         fresh = list(islice(self.ignored, self._logged, None))
         self._logged += len(fresh)
         signals = self.driver.spec.schema.signals
@@ -119,17 +120,17 @@ class JsonObjects:
         self._is_any_lost = self._is_any_lost or robot is None
         _log.warning("%s is not taken: %s", where, why)
         for one in self._last if robot is None else [robot]:
-            if self._last.get(one) is None:  # its objects have no time and are stamped on arrival
+            if self._last.get(one) is None:  # its objects have no stamps: the loss was just now
                 self.driver.lose(robot=one, is_over=True, why=_UNREADABLE)
             else:
                 self.driver.miss(robot=one, why=_UNREADABLE)
 
 
 def decoded_object(text: bytes) -> Any:
-    """Decode a text.
+    """Decode JSON text.
 
     Raises:
-        TraceError: it is no JSON.
+        TraceError: the text is not JSON.
     """
     try:
         return decoded(text, msgspec.json.decode)
@@ -141,18 +142,18 @@ def decoded_object(text: bytes) -> Any:
         raise TraceError(f"{error}{wanted}") from None
 
 
-PROLOGUE = 10  # the most lines that are looked at for the first one that says what the stream is of
+PROLOGUE = 10  # the most lines examined to find out whether a stream has stamps
 
 
 def begin_of(lines: Iterable[bytes], schema: Schema) -> tuple[list[bytes], int | None]:
-    """The first lines of a stream, up to the one that says whether its lines have stamps; not more.
+    """Read the first lines of a stream, up to the one that shows whether its lines have stamps.
 
-    Programs greet before they report: a line that cannot be read, or that has neither a stamp nor a
-    declared name, does not say it.
+    Programs often print a greeting first. So lines that are unreadable, or have neither a stamp nor
+    a declared name, are passed over.
 
     Returns:
-        The lines, and the stamp of the last one, ns; `None`: it has none, or `PROLOGUE` lines said
-        nothing.
+        The lines read, and the stamp of the last one, ns; `None` if it has none, or if `PROLOGUE`
+        lines showed nothing.
     """
     taken: list[bytes] = []
     for line in lines:
@@ -171,7 +172,7 @@ def begin_of(lines: Iterable[bytes], schema: Schema) -> tuple[list[bytes], int |
 def _read(
     fields: Any, schema: Schema, ignored: Counter[str]
 ) -> tuple[int | None, dict[str, Value]]:
-    """The stamp of an object, if it has one, and its values."""
+    """The stamp of an object in ns, `None` if it has none, and its values."""
     stamps = DEFAULT_COLUMNS if schema.stamps is None else (schema.stamps.column,)
     try:
         if not isinstance(fields, dict) or any(name in fields for name in stamps):
@@ -186,10 +187,10 @@ _PIECE = 1 << 16  # the most bytes read at once
 
 
 def feed_lines(objects: JsonObjects, lines: Iterable[bytes], robot: str | None = None) -> None:
-    """Offer lines as samples, until they end or the driver is closed; call it in its own thread.
+    """Offer lines as samples until they end or the driver is closed; to run in its own thread.
 
-    Lines with a time wait for room in the queue, so that a pipe faster than the monitors is slowed
-    down and nothing is lost.
+    Lines with stamps wait for room in the queue. So a pipe that is faster than the monitors is
+    slowed down, and nothing is lost.
 
     `robot` is the field with the name of the robot; `None`: there is only one.
     """
@@ -197,7 +198,7 @@ def feed_lines(objects: JsonObjects, lines: Iterable[bytes], robot: str | None =
         for number, line in enumerate(lines, 1):
             if not line.strip():
                 continue
-            # If the robot's name cannot be read, the line may be of any robot.
+            # If the robot's name cannot be read, the line may belong to any robot.
             name = "" if robot is None else None
             try:
                 fields = decoded_object(line)
@@ -216,8 +217,11 @@ def _name_of_robot(fields: object, robot: str) -> str:
 
 
 def read_lines(file: int) -> Iterator[bytes]:
-    """The lines of a pipe, file or terminal, each once it is whole, without a byte order mark."""
-    begun: list[bytes] = []  # the pieces of a line without its end, joined once
+    """The lines of a pipe, file or terminal, each once it is complete, without a byte order mark.
+
+    A longer line than `LONGEST_LINE` comes in pieces.
+    """
+    begun: list[bytes] = []  # pieces of an incomplete line, joined once to avoid quadratic cost
     length, mark = 0, BOM_UTF8
     while piece := os.read(file, _PIECE):
         *whole, rest = piece.split(b"\n")

@@ -1,4 +1,4 @@
-"""Translates live messages of topics to samples, by the same rules as for recordings."""
+"""Translation of live messages to samples, by the same rules as for recordings."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _NOW = 1 - TIME_LIMIT  # stands for the instant at which a message arrives
 
 
 class MessageFeed:
-    """Offers the values of declared names in messages, by the binding of the schema or by name.
+    """Offers the values of declared names in messages, found by the binding or by topic names.
 
     If a message cannot be read, the names that its topic feeds are lost.
 
@@ -42,7 +42,7 @@ class MessageFeed:
         *,
         clock: SimulatedClock | None = None,
     ) -> None:
-        # whether the time is known. Only then are topics other than `/clock` to be subscribed to:
+        # whether the time is known; only then may topics other than `/clock` be subscribed to, as
         # earlier messages could not be stamped
         self.has_time = clock is None
         self._clock = clock
@@ -56,7 +56,7 @@ class MessageFeed:
         self._heard: dict[str, int] = {}
 
     def topics(self) -> Iterator[str]:
-        """The topics that may feed a name: those of the binding, and those that names suggest.
+        """The topics that may feed a declared name: from the binding, or suggested by the name.
 
         `/clock` comes first, if the driver's clock follows it.
         """
@@ -66,9 +66,9 @@ class MessageFeed:
         yield from dict.fromkeys(topic for name in names for topic in self._topics_of(name))
 
     def _topics_of(self, name: str) -> Iterator[str]:
-        """The topics that may feed a name: of its column, of its binding, or those it begins with.
+        """The topics that may feed a name: from its binding, else from prefixes of its column.
 
-        `base.odom` may be of the topic `/base/odom`, or a field of `/base`.
+        `base.odom` may be the topic `/base/odom` or a field of `/base`.
         """
         bound = self._schema.binding.bounds.get(name)
         if bound is not None and name not in self._schema.columns:
@@ -80,7 +80,7 @@ class MessageFeed:
             path = path.rpartition("/")[0]
 
     def take(self, topic: Topic, content: Any) -> None:
-        """Offer the sample of a message, an object with attributes or a mapping."""
+        """Offer the sample of a message; `content` is an object with attributes or a mapping."""
         if topic.name == CLOCK and self._clock is not None:
             self.set_time(content.clock.sec, content.clock.nanosec)
             return
@@ -90,7 +90,7 @@ class MessageFeed:
                 t_ns = None if t == _NOW else t
                 self._driver.offer(values, robot=self._robot, t_ns=t_ns)
                 self._heard[topic.name] = self._driver.now_ns if t_ns is None else t_ns
-        except Exception as error:  # noqa: BLE001 - middleware swallows errors, or ends by them
+        except Exception as error:  # noqa: BLE001 - middleware swallows errors or dies of them
             self.lose(topic.name, str(error))
 
     @contextmanager
@@ -98,13 +98,13 @@ class MessageFeed:
         """Declare everything lost if the receiving loop within `with` ends by an error."""
         try:
             yield
-        except Exception as error:  # noqa: BLE001 - nobody else would be told
+        except Exception as error:  # noqa: BLE001 - nobody else would notice
             _log.exception("no further message is received")
             why = f"no message is heard any more ({type(error).__name__})"
             self._driver.lose(robot=self._robot, why=why)
 
     def set_time(self, seconds: int, nanoseconds: int) -> None:
-        """Set the clock to a time from `/clock`."""
+        """Set the clock to a time received on `/clock`."""
         if self._clock is not None:
             self._clock.set_ns(seconds * TICKS_PER_SECOND + nanoseconds)
             self.has_time = True
@@ -124,27 +124,27 @@ class MessageFeed:
 
         Args:
             topic: its name.
-            why: the reason why a message could not be read, or did not arrive.
-            before: whether the outage reaches back to the last message that was read.
-            for_good: whether it lasts until `find`.
+            why: the reason why a message could not be read or did not arrive.
+            before: whether the outage starts at the last message that was read.
+            for_good: whether it lasts until `find` is called.
         """
         _log.warning("a message of %s is not taken: %s", topic, why)
         since = self._heard.get(topic, self._began) + 1
         self._driver.lose(
             self._names_of(topic),
             robot=self._robot,
-            # With stamps of its own, a message may be older than its arrival.
+            # A message with its own stamp may be older than its arrival.
             since_ns=since if before or topic in self._stamped else None,
             is_over=not for_good,
             why=f"{topic} cannot be read" if for_good else f"a message of {topic} was not taken",
         )
 
     def find(self, topic: str) -> None:
-        """Say that messages of a topic are heard again, as those were before it was lost."""
+        """End the outage of a topic: its messages arrive again."""
         self._driver.found(self._names_of(topic), robot=self._robot)
 
     def _names_of(self, topic: str) -> list[str]:
-        """The names of the current specification that a topic feeds, or may feed."""
+        """The names of the current specification that a topic feeds or may feed."""
         declared, schema = self._driver.spec.schema, self._schema
         names = self._fed.get(topic) or [
             name for name in (*schema.signals, *schema.events) if topic in self._topics_of(name)

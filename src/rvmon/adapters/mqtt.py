@@ -1,4 +1,4 @@
-"""Live data over MQTT, and verdicts back; needs paho-mqtt, the extra `mqtt`."""
+"""Live data and published verdicts over MQTT; needs paho-mqtt (extra `mqtt`)."""
 
 from __future__ import annotations
 
@@ -16,45 +16,45 @@ _log = logging.getLogger("rvmon.live.input")
 
 _PORT = 1883
 _DROPPED = "$SYS/broker/publish/messages/dropped"
-"""The topic on which mosquitto publishes, every ten seconds, the number of dropped messages."""
+"""The topic on which mosquitto publishes the number of dropped messages every ten seconds."""
 
-_PATIENCE_S = 10.0  # seconds in which a broker has to answer
+_PATIENCE_S = 10.0  # seconds within which a broker has to answer
 
 
 @dataclass(frozen=True, slots=True)
 class Address:
     """The address of a broker, with the topics to read."""
 
-    host: str  # of the broker
-    port: int  # of it
-    user: str  # name and password, or empty
-    password: str  # see there
-    topics: str  # a filter of MQTT; its first `+` is the name of the robot
+    host: str
+    port: int
+    user: str  # empty if the broker needs none
+    password: str  # empty if the broker needs none
+    topics: str  # an MQTT filter; its first `+` stands for the name of the robot
 
     @property
     def prefix(self) -> int:
-        """The levels of a topic that are no part of a name."""
+        """The number of leading levels of a topic that are not part of a name."""
         levels = self.topics.split("/")
         return len(levels) - (levels[-1] == "#")
 
     @property
     def robot(self) -> int | None:
-        """The level of a topic that names the robot."""
+        """The index of the topic level with the name of the robot; `None` if there is none."""
         levels = self.topics.split("/")
         return levels.index("+") if "+" in levels else None
 
 
 def address_of(url: str) -> Address:
-    """Read `mqtt://USER:PASSWORD@HOST:PORT/TOPICS`.
+    """Parse `mqtt://USER:PASSWORD@HOST:PORT/TOPICS`.
 
     Raises:
-        RvmonError: it has another form.
+        RvmonError: the address has another form.
 
     >>> address_of("mqtt://broker/robots/+/#")
     Address(host='broker', port=1883, user='', password='', topics='robots/+/#')
     """
     form = "expected mqtt://HOST/TOPICS, such as mqtt://localhost/robots/+/#"
-    # What urlsplit takes for a fragment is the filter's end.
+    # `urlsplit` would take the `#` of a filter for the start of a fragment.
     parts = urlsplit(url.replace("#", "%23"))
     topics = unquote(parts.path[1:])
     levels = topics.split("/")
@@ -73,18 +73,18 @@ def address_of(url: str) -> Address:
 
 
 class MqttSource:
-    """Offers what is published: a JSON object or value for each message, from `with` on.
+    """An MQTT client that offers each message, a JSON object or value, within `with`.
 
-    The levels of a topic behind the filter's prefix are names before that of the fields: with
-    `robots/+/#`, `0.3` under `robots/left/arm/speed` is `arm.speed` of the robot `left`, as is
-    `{"speed": 0.3}` under `robots/left/arm`. Where the connection is lost, all names are lost since
-    the last message, as nobody knows how much later it broke, until it is back.
+    The levels of a topic after the filter's prefix become the first parts of the name: with
+    `robots/+/#`, the message `0.3` under `robots/left/arm/speed` is `arm.speed` of the robot
+    `left`, as is `{"speed": 0.3}` under `robots/left/arm`. If the connection is lost, all names are
+    lost from the last message, as the connection may have broken right after it, until it is back.
 
     Args:
-        objects: get what is published.
+        objects: receives the messages.
         address: of the broker.
-        verdicts: the topic under which verdicts are published, each as JSON under the name of its
-            requirement; `None`: none are.
+        verdicts: the topic prefix under which verdicts are published as JSON, each under the name
+            of its requirement; `None`: they are not published.
 
     Raises:
         RvmonError: paho-mqtt is not installed.
@@ -115,7 +115,7 @@ class MqttSource:
         """Connect and subscribe.
 
         Raises:
-            RvmonError: the broker cannot be reached, or refuses.
+            RvmonError: the broker cannot be reached or refuses.
         """
         where = f"{self._address.host}:{self._address.port}"
         try:
@@ -133,9 +133,9 @@ class MqttSource:
         if reason.is_failure:
             self._refusal = str(reason)
             self._connected.set()
-        else:  # after each loss of the connection, too
-            # With QoS 1 a broker sends so many as were acknowledged, and drops what is published
-            # faster: at 4,000 messages in a second that is half of them.
+        else:  # also when the connection is back after a loss
+            # QoS 0: with QoS 1 a broker sends only as fast as messages are acknowledged, and drops
+            # the rest. At 4,000 messages per second that is half of them.
             client.subscribe([(self._address.topics, 0), (_DROPPED, 0)])
 
     def _on_subscribe(self, _: object, __: object, ___: object, reasons: Any, ____: object) -> None:
@@ -143,8 +143,8 @@ class MqttSource:
             self._refusal = (
                 f"the broker allows nobody to read {self._address.topics} ({reasons[0]})"
             )
-            _log.warning("the broker refuses: %s", self._refusal)  # what was lost stays so
-        elif self._connected.is_set():  # again
+            _log.warning("the broker refuses: %s", self._refusal)  # an outage then goes on
+        elif self._connected.is_set():  # not the first time: the outage ends
             self._objects.driver.found()
         self._heard = self._objects.driver.now_ns
         self._connected.set()
@@ -159,11 +159,11 @@ class MqttSource:
     def _on_message(self, _: object, __: object, message: Any) -> None:
         try:
             self.hear(message.topic, bytes(message.payload), is_old=message.retain)
-        except Exception as error:  # noqa: BLE001 - as of a topic that is no text: paho would end
+        except Exception as error:  # noqa: BLE001 - it would end paho's thread
             self._objects.lose("a message", error, None)
 
     def hear(self, topic: str, payload: bytes, *, is_old: bool = False) -> None:
-        """Offer what a message says; the broker had kept an old one from before."""
+        """Offer a message; an old one was retained by the broker."""
         self._heard = self._objects.driver.now_ns
         if topic == _DROPPED:
             self._hear_of_drops(payload)
@@ -180,7 +180,7 @@ class MqttSource:
             self._objects.lose(f"a message of {topic}", error, robot)
 
     def _hear_of_drops(self, payload: bytes) -> None:
-        """Have lost what the broker may have dropped of ours since it last said how much it did."""
+        """Report an outage since the last count if the broker has dropped messages meanwhile."""
         count = int(payload) if payload.isdigit() else 0
         driver = self._objects.driver
         if self._dropped is not None and count > self._dropped:
@@ -190,7 +190,7 @@ class MqttSource:
         self._dropped, self._counted_at = count, driver.now_ns
 
     def publish(self, judgement: Judgement) -> None:
-        """Publish a verdict: to be called by a driver, as its `on_judged`."""
+        """Publish a verdict; to be used as `on_judged` of a driver."""
         if self._verdicts is not None:
             topic = f"{self._verdicts}/{judgement.attempt.requirement}"
             self._client.publish(topic, judgement.to_json(), qos=1)

@@ -1,4 +1,4 @@
-"""Live data of ROS 1, and verdicts back; needs rospy of a ROS installation, and the extra `ros`."""
+"""Live data and published verdicts of ROS 1; needs rospy of a ROS installation, and extra `ros`."""
 
 from __future__ import annotations
 
@@ -13,27 +13,28 @@ from rvmon.recordings.messages import Topic
 from rvmon.recordings.messages.ros import bag_readers, ros_topic
 
 _TURN_S = 0.2
-"""Seconds between two looks at the connections: rospy makes lost ones anew, and tells nobody."""
+"""Seconds between two checks of the connections; rospy reconnects without telling anybody."""
 
 
 class Ros1Source:
-    """A node that offers what the topics of a feed say, from `with` on.
+    """A ROS 1 node that passes the messages of a feed's topics to it, within `with`.
 
-    Messages bring their definition along: packages of their types need not be installed. While the
-    connection to a publisher is lost that has not left, what its topic feeds is unknown.
+    Connections carry the message definitions, so the packages of the types need not be installed.
+    While the connection to an existing publisher is lost, the names that its topic feeds are
+    unknown.
 
     Args:
-        feed: gets the messages.
+        feed: receives the messages.
         verdicts: the topic on which verdicts are published, as JSON in `std_msgs/String`; `None`:
-            none are.
+            they are not published.
 
     Raises:
-        RvmonError: rospy or rosbags is not there.
+        RvmonError: rospy or rosbags is not installed.
     """
 
     def __init__(self, feed: MessageFeed, *, verdicts: str | None = None) -> None:
         self._rospy = _rospy()
-        bag_readers()  # says what to install
+        bag_readers()  # fails early, with the command that installs rosbags
         self._feed = feed
         self._verdicts = verdicts
         self._publisher: Any = None
@@ -45,7 +46,7 @@ class Ros1Source:
         self._decoders: dict[tuple[str, str], tuple[Topic, Callable[[bytes], Any]]] = {}
 
     def __enter__(self) -> Ros1Source:
-        """Begin the node.
+        """Start the node.
 
         Raises:
             RvmonError: no master answers.
@@ -63,7 +64,8 @@ class Ros1Source:
         if self._feed.has_time:
             self._subscribe()
         else:
-            from rosgraph_msgs.msg import Clock  # rospy reads it, too: there is one type per topic
+            # A topic can have only one type in a process, and rospy itself subscribes to this one.
+            from rosgraph_msgs.msg import Clock
 
             self._subscribers.append(rospy.Subscriber(CLOCK, Clock, self._tick, tcp_nodelay=True))
         self._looking.start()
@@ -84,7 +86,7 @@ class Ros1Source:
             self._subscribe()
 
     def _take(self, message: Any, topic: str) -> None:
-        header = message._connection_header  # rospy has no other way to the type of an AnyMsg
+        header = message._connection_header  # rospy has no public way to the type of an AnyMsg
         key = topic, header["md5sum"]
         if key not in self._decoders:
             kind = header["type"].replace("/", "/msg/")
@@ -93,7 +95,7 @@ class Ros1Source:
         known, decode = self._decoders[key]
         try:
             content = decode(message._buff)
-        except Exception as error:  # noqa: BLE001 - code that was made of the definition
+        except Exception as error:  # noqa: BLE001 - raised by code generated from the definition
             self._feed.lose(topic, f"it does not fit its definition ({error})")
             return
         self._feed.take(known, content)
@@ -106,14 +108,14 @@ class Ros1Source:
                         self._look_at(subscriber)
 
     def _look_at(self, subscriber: Any) -> None:
-        """Have lost what a topic feeds where a connection of it was lost, or made anew."""
+        """Report an outage of a topic if one of its connections was lost or renewed."""
         topic = subscriber.resolved_name
-        connections = tuple(subscriber.impl.connections or ())  # none: rospy has ended
+        connections = tuple(subscriber.impl.connections or ())  # `None` once rospy has ended
         headers = [connection.header for connection in connections if connection.socket is not None]
         now = {header["callerid"]: header for header in headers if header and "callerid" in header}
         for name, node in [link for link in self._links if link[0] == topic]:
             link, header = (name, node), now.get(node)
-            # By identity: after a reconnection the header is another object of equal content.
+            # Compared by identity: after a reconnection the header is a new, equal object.
             if header is self._links[link]:
                 continue
             if link in self._down:
@@ -130,22 +132,22 @@ class Ros1Source:
         self._links |= {(topic, node): header for node, header in now.items()}
 
     def _end_of(self, link: tuple[str, str]) -> None:
-        """A publisher is heard again, or has left."""
+        """Handle that a lost publisher is back or has left; the last one ends the outage."""
         del self._links[link]
         self._down.remove(link)
         if all(topic != link[0] for topic, _ in self._down):
             self._feed.find(link[0])
 
     def _publishes(self, topic: str, node: str) -> bool:
-        """Whether a node is listed as one that publishes a topic; it is if no master answers."""
+        """Whether the master lists a node as publisher of a topic; true if no master answers."""
         try:
             _, _, (publishers, _, _) = self._rospy.get_master().getSystemState()
-        except Exception:  # noqa: BLE001 - nobody answers, or somebody else, or not in full
+        except Exception:  # noqa: BLE001 - no answer, or a malformed one
             return True
         return any(name == topic and node in nodes for name, nodes in publishers)
 
     def publish(self, judgement: Judgement) -> None:
-        """Publish a verdict: to be called by a driver, as its `on_judged`."""
+        """Publish a verdict; to be used as `on_judged` of a driver."""
         if self._publisher is not None:
             self._publisher.publish(judgement.to_json())
 
@@ -158,10 +160,10 @@ class Ros1Source:
 
 
 def uses_sim_time() -> bool:
-    """Whether nodes of ROS 1 are set to take the time of `/clock`, by the parameter of that name.
+    """Whether ROS 1 nodes take the time from `/clock`, by the parameter `/use_sim_time`.
 
     Raises:
-        RvmonError: rospy is not there, or no master answers.
+        RvmonError: rospy is not installed, or no master answers.
     """
     rospy = _rospy()
     try:

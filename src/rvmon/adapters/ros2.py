@@ -1,7 +1,7 @@
-"""Live data of ROS 2 through a node of rclpy, and verdicts back.
+"""Live data and published verdicts of ROS 2 through a node of rclpy.
 
-It has been tested only with a stub of rclpy, written after the sources of rclpy 8. To read ROS 2
-without an installation of it, see `rvmon.adapters.dds`.
+It has been tested only with a stub of rclpy, which was written from the sources of rclpy 8. To read
+ROS 2 without installing it, see `rvmon.adapters.dds`.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ _DEPTH = 1_000  # the most messages of a topic queued in the middleware
 _TURN_S = 0.2  # seconds between two searches for newly published topics
 
 _ARRAY = re.compile(r"sequence<(?P<of>.+?)(, \d+)?>|(?P<of_fixed>.+)\[\d+\]")
-"""`sequence<double>`, `sequence<double, 3>`, `double[9]`."""
+"""Matches `sequence<double>`, `sequence<double, 3>` and `double[9]`."""
 
 
 class Ros2Source:
     """A ROS 2 node that passes the messages of a feed's topics to it, within `with`.
 
-    Topics are discovered, with their types, when they are published; the packages of the types must
-    be installed. Subscriptions are reliable, or latched, if all publishers are.
+    Topics and their types are discovered when they are published; the packages of the types must be
+    installed. A subscription is reliable if all publishers are, and latched if all publishers are.
 
     Args:
         feed: receives the messages; if it follows `/clock`, the node has `use_sim_time`.
@@ -54,7 +54,7 @@ class Ros2Source:
         self._found: dict[str, set[str]] = {}  # by discovered topic, its types
 
     def __enter__(self) -> Ros2Source:
-        """Start the node in its own thread and rclpy context, apart from the program's."""
+        """Start the node in its own thread, with an rclpy context apart from the program's."""
         from rclpy.clock import Clock, ClockType
         from rclpy.executors import SingleThreadedExecutor
 
@@ -69,7 +69,7 @@ class Ros2Source:
             from std_msgs.msg import String
 
             self._publisher = self._node.create_publisher(String, self._verdicts, 100)
-        # A steady clock runs even if the simulated time is not published.
+        # The timer needs a steady clock, which runs even if no simulated time is published.
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._node.create_timer(_TURN_S, self._find, clock=steady)
         self._find()

@@ -1,4 +1,6 @@
-"""The command `rvmon`: a file per subcommand, or for a few; one per group with their arguments.
+"""The command `rvmon`.
+
+The work of a subcommand is in the module of its name; one module per group declares the arguments.
 
 Exit codes: 0 fine, 1 a requirement failed or could not be judged, 2 wrong input or spec,
 3 internal error, 130 interrupted (Ctrl-C, SIGTERM), 141 nobody reads the output any more.
@@ -48,7 +50,7 @@ GROUPS = {
         "export": "write C monitors, automata, or models for UPPAAL",
     },
 }
-"""The purpose of each command, as `rvmon --help` lists them."""
+"""The purpose of each command, by group, as listed by `rvmon --help`."""
 
 _ARGUMENTS = {
     "write requirements": "specification_commands",
@@ -59,29 +61,29 @@ _ARGUMENTS = {
 
 _MODULES = {
     **{name: _ARGUMENTS[heading] for heading, group in GROUPS.items() for name in group},
-    "lsp": "specification_commands",  # editors start it
+    "lsp": "specification_commands",  # started by editors, so the help does not list it
 }
-"""By command, the module of its arguments."""
+"""By command, the module that declares its arguments."""
 
 COMMANDS = tuple(_MODULES)
 
 _WORK_OF = {"format": "check", "init": "look"}
-"""The commands whose work stands in the file of another."""
+"""The commands whose work is in the module of another command."""
 
 
 _READER_LEFT = 128 + 13
-"""As of a program that SIGPIPE ended: what was not read to its end is no success."""
+"""The exit code of a program that SIGPIPE ended: partly read output is no success."""
 
-_MANY = 50_000  # objects are so many before the first search for cycles: imports make none
+_MANY = 50_000  # garbage collections start at so many new objects, as imports make no cycles
 
 
 def program() -> int:
-    """The process `rvmon`: as `main`, and spared what a process that soon ends has no need of."""
-    # NumPy's algebra, of which nothing is used, would start a thread per core.
+    """Run `main` as the process `rvmon`, tuned for a short life."""
+    # NumPy's linear algebra, which is not used, would start a thread per core.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     gc.set_threshold(_MANY)
     code = main()
-    gc.freeze()  # what is left goes with the process: it is not searched once more
+    gc.freeze()  # skips the final garbage collection: the process ends anyway
     return code
 
 
@@ -97,14 +99,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def guarded(parsed: Callable[[], argparse.Namespace]) -> int:
-    """Run the chosen subcommand; errors become a message and an exit code, never a traceback."""
+    """Run the parsed subcommand; errors become a message and an exit code, never a traceback."""
     _open_closed()
-    spell()  # a narrow encoding costs signs, not the answer
+    spell()
     try:
         with interrupted_by_sigterm():
             try:
                 namespace = parsed()
-            except SystemExit as stop:  # argparse has reported what is wrong, or given help
+            except SystemExit as stop:  # argparse has printed an error or the help
                 sys.stdout.flush()
                 return stop.code if isinstance(stop.code, int) else 2
             with at_most(getattr(namespace, "most_megabytes", None)):
@@ -113,13 +115,13 @@ def guarded(parsed: Callable[[], argparse.Namespace]) -> int:
     except RvmonError as error:
         findings = error.diagnostics if isinstance(error, DiagnosedError) else ()
         text = rendered(findings) if findings else str(error)
-        headed = text.startswith(("error", "warning"))  # diagnostics bring their own heading
+        headed = text.startswith(("error", "warning"))  # diagnostics have their own heading
         warn(text if headed else f"error: {text}")
         return 2
     except KeyboardInterrupt:
         return _interrupted()
     except (BrokenPipeError, SystemExit):
-        # The reader of our output left, as `head` does; rich ends the program where it notices.
+        # The reader of our output left, as `head` does; rich raises SystemExit when it notices.
         _drop_output()
         return _READER_LEFT
     except Exception as error:
@@ -142,10 +144,10 @@ def guarded(parsed: Callable[[], argparse.Namespace]) -> int:
 
 
 def _open_closed() -> None:
-    """Let nothing come from a standard stream, or go to one, that who called has closed.
+    """Open `os.devnull` for each standard stream that the caller has closed.
 
-    What is opened gets the lowest free number: else that of a recording, to which libraries that
-    complain would write.
+    A newly opened file gets the lowest free descriptor. Otherwise a recording could get that of
+    standard error, and libraries would write their warnings into it.
     """
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:
@@ -154,20 +156,20 @@ def _open_closed() -> None:
 
 
 def _drop_output() -> None:
-    """Let what is not written yet go nowhere, or the interpreter complains as it ends."""
+    """Discard unwritten output, about which the interpreter would complain when it ends."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _interrupted() -> int:
     warn("interrupted")
-    # An interrupt that passed through an `exec` of text, as dataclasses do when they are made,
-    # stays noted in the interpreter: `python -m` would end by the signal. The next one forgets it.
+    # If an interrupt passed through an `exec` of text, which dataclasses use, the interpreter
+    # remembers it, and `python -m` would end by the signal. Another `exec` clears that.
     exec("")  # noqa: S102 - nothing is run
     return 130
 
 
 def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
-    """The parser with the named subcommand; without one, with the names of all."""
+    """The parser with the subcommand that `words` name; without one, with the names of all."""
     import argparse
 
     from rvmon.cli.parser import Parser
@@ -203,7 +205,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
 
 
 def _run(command: str, namespace: argparse.Namespace) -> int:
-    """Import what the command needs, of which its help needs nothing, and run it."""
+    """Import the module of a command and run it; the help of the command needs no such import."""
     module = import_module(f"rvmon.cli.{_WORK_OF.get(command, command)}")
     code: int = getattr(module, f"run_{command}")(namespace)
     return code

@@ -1,8 +1,11 @@
-"""The command line of a campaign of tests: `run` plays all, `replay` one, `mutate` mutants of code.
+"""The command line of a campaign of tests.
 
-`shrink` makes one smaller, `close` makes its own. Exit codes: 0 all went as expected (a replay: no
-requirement failed; `close`: all is covered that can be, too; a test that is shrunk fails), 1 it did
-not, 2 wrong input, 3 internal error, 130 interrupted (Ctrl-C, SIGTERM).
+`run` plays all tests, `replay` plays one, `mutate` plays tests on mutants of the code, `shrink`
+makes a failing test smaller, and `close` generates tests until coverage has no holes.
+
+Exit codes: 0 all is as expected (`replay`: no requirement failed; `close`: also, all that can be
+covered is; `shrink`: the test fails), 1 it is not, 2 wrong input, 3 internal error, 130 interrupted
+(Ctrl-C, SIGTERM).
 """
 
 from __future__ import annotations
@@ -54,18 +57,18 @@ def add_commands(
     strategies: str,
     defaults: Mapping[str, Mapping[str, str]] | None = None,
 ) -> dict[str, Parser]:
-    """Declare the commands of a campaign; a program may add options of its own to their parsers.
+    """Declare the commands of a campaign; a program may add its own options to their parsers.
 
     Args:
-        commands: take them.
-        campaign: makes the campaign once the command line is read.
-        robots: the names of its robots, for people.
-        strategies: of the campaign, to choose from.
-        defaults: by command, the `robot` and the `strategy` that it takes if none is named.
+        commands: receives the parsers of the commands.
+        campaign: creates the campaign from the parsed command line.
+        robots: the names of its robots, for help texts.
+        strategies: the names of its strategies, for help texts.
+        defaults: by command, the default `robot` and `strategy`.
 
     Returns:
-        The parsers by command. `again`, if a program sets it, names further options that belong to
-        the command which does the same again.
+        The parsers by command. A program can set their default `again` to the names of further
+        options that belong to a command line which repeats the run.
     """
     parsers = {}
     for name, command in _COMMANDS.items():
@@ -101,9 +104,10 @@ def _run(arguments: Namespace) -> int:
 
 
 def run_tests(campaign: Campaign, arguments: Namespace) -> int:
-    """Play a campaign, show it, compare it with what was expected, and return an exit code.
+    """Play a campaign, print it, compare it with the expected verdicts, and return an exit code.
 
-    `arguments` has the options of `add_run_options`; perhaps `strategy`, `robot`, `spec`, `format`.
+    `arguments` has the options of `add_run_options`, and optionally `strategy`, `robot`, `spec` and
+    `format`.
     """
     from rvmon.cli.campaign_run import conduct, is_as_expected, show
 
@@ -153,10 +157,10 @@ def _mutate(arguments: Namespace) -> int:
 
 
 def names_of(listed: str | None, known: Sequence[str], what: str) -> tuple[str, ...]:
-    """Read names that are separated by commas; `None`: all.
+    """Parse names separated by commas; `None`: all.
 
     Raises:
-        UnknownNameError: one does not exist, or none is named.
+        UnknownNameError: a name does not exist, or there is none.
     """
     if listed is None:
         return tuple(known)
@@ -174,7 +178,7 @@ def _one_robot(campaign: Campaign, arguments: Namespace) -> str:
 
 
 def _judged_by(arguments: Namespace) -> Campaign:
-    """The campaign with the time that is given, and other requirements for all of its robots."""
+    """The campaign with the options `--timeout` and `--spec` applied."""
     campaign: Campaign = arguments.campaign(arguments)
     if getattr(arguments, "timeout", None) is not None:
         campaign = replace(campaign, timeout_s=arguments.timeout)
@@ -189,7 +193,7 @@ def _judged_by(arguments: Namespace) -> Campaign:
 
 
 def _as_asked(arguments: Namespace) -> Campaign:
-    """The campaign as the options change it; wrong ones are refused before anything is played."""
+    """The campaign with the options applied; wrong ones are refused before any test is played."""
     from rvmon.cdv.gate import refuse_unknown
 
     refuse_unknown(arguments.campaign(arguments))
@@ -199,7 +203,7 @@ def _as_asked(arguments: Namespace) -> Campaign:
 
 
 def _words(arguments: Namespace, *options: str) -> list[object]:
-    """The command that does it again, with those options that were given."""
+    """The command line that repeats this one, as words, with the options that were given."""
     words: list[object] = [arguments.command]
     for option in ("robot", *arguments.again, *options, "spec", "timeout"):
         value = getattr(arguments, option, None)
@@ -209,7 +213,7 @@ def _words(arguments: Namespace, *options: str) -> list[object]:
 
 
 def add_run_options(parser: Parser) -> None:
-    """Declare how many tests are played, and where their results go."""
+    """Declare the options of `run`: which tests are played, and where results go."""
     parser.option(
         "--tests N", "number of tests of each random strategy (100)", type=positive, default=100
     )
@@ -247,7 +251,7 @@ def _add_playing_options(parser: Parser) -> None:
 
 
 def _add_closing_options(parser: Parser) -> None:
-    """Declare when closing gives up, and where the suite goes."""
+    """Declare the options of `close`: when it gives up, and where the suite goes."""
     parser.option("--tests N", "play at most N tests (400)", type=positive, default=400)
     parser.option(
         "--seconds TIME", f"begin no test after TIME ({TIME_FORMS}; default: any)", type=span_s
@@ -269,14 +273,14 @@ def _add_closing_options(parser: Parser) -> None:
 
 
 def _add_replay_options(parser: Parser) -> None:
-    """Declare where the run of a test goes."""
+    """Declare the options of `replay`: where the run of the test goes."""
     parser.option("--out DIR", "write the recording and a page into this folder")
     parser.option("--mcap FILE", "write verdicts, values and the scene for Foxglove")
     parser.option("--expected", "exit with 0 if all verdicts are as the test expects")
 
 
 def _add_shrink_options(parser: Parser) -> None:
-    """Declare by which failure a test is shrunk, and where it goes."""
+    """Declare the options of `shrink`: which failure has to stay, and where the test goes."""
     parser.option(
         "--requirement ID", "the requirement that has to fail (default: the first that does)"
     )
@@ -285,7 +289,7 @@ def _add_shrink_options(parser: Parser) -> None:
 
 
 def _add_mutate_options(parser: Parser) -> None:
-    """Declare which mutants are played by which tests, and where results go."""
+    """Declare the options of `mutate`: which tests, which mutants, and where results go."""
     parser.option(
         "--tests N|DIR",
         "number of tests of each random strategy (100), or a folder of tests",
@@ -324,7 +328,7 @@ def _add_timeout(parser: Parser) -> None:
 class _Command(NamedTuple):
     add_options: Callable[[Parser], None]
     run: Callable[[Namespace], int]
-    robot: str  # that it takes by default
+    robot: str  # the default robot, in words
     help: str
     description: str
     example: str

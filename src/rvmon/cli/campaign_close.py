@@ -1,4 +1,4 @@
-"""Close the holes of a campaign: make, play, show, keep the smallest suite."""
+"""The command `close` of a campaign: generate tests for the holes, keep the smallest suite."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def conduct_closing(
     arguments: Namespace,
     words: Sequence[object],
 ) -> tuple[Closed, CampaignJudgement]:
-    """Close holes, show what came of it, write the suite; returns how that is judged, too."""
+    """Close holes, print the result and write the suite; returns result and judgement."""
     campaign = replace(campaign, robots={robot: campaign.robots[robot]})
     folder = output_folder(arguments.out) if arguments.out else None
     before = dated_files(folder) if folder is not None else {}

@@ -1,4 +1,4 @@
-"""Evidence of a campaign: its tests, with what they showed, and what played them."""
+"""Evidence of a campaign: its tests, their verdicts, and the versions of all programs."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from rvmon.verdicts.serialise import VerdictRow
 
 
 def begun(campaign: Campaign, path: str) -> tuple[dict[str, bytes], list[str]]:
-    """The texts of requirements, before the campaign is played, and after."""
+    """The archive entries of all requirements; read before and after the campaign is played."""
     refuse_no_file(path)
     specs = {name: robot.spec for name, robot in campaign.robots.items() if robot.spec is not None}
     if len(specs) < len(campaign.robots):
@@ -40,7 +40,13 @@ def write_campaign(
     specs: Mapping[str, Spec],
     words: Sequence[object],
 ) -> None:
-    """Write the evidence of a campaign."""
+    """Write the evidence of a campaign.
+
+    `before` is what `begun` returned before the campaign; `words` are its command line.
+
+    Raises:
+        RvmonError: the requirements have changed since, or the file cannot be written.
+    """
     campaign = results.plan.campaign
     if begun(campaign, path) != before:
         raise RvmonError("--evidence: requirements have changed meanwhile: run it again")
@@ -62,7 +68,7 @@ def write_campaign(
         for robot in campaign.robots
     }
     table = {**campaign.presentation.document(summary)}
-    table.pop("seconds", None)  # those that it took
+    table.pop("seconds", None)  # the duration would make equal runs differ
     entries = {
         **before[0],
         **{f"tests/{test.name}.json": to_json(test) for test in tests.values()},
@@ -74,7 +80,7 @@ def write_campaign(
 
 
 def programs_of(campaign: Campaign) -> dict[str, str]:
-    """SHA-256 of the folders and files that outcomes of a campaign depend on, by name."""
+    """SHA-256, by name, of the folders and files that the outcomes of a campaign depend on."""
     return {
         path.name if path.is_dir() else f"{path.parent.name}/{path.name}": evidence.sha256_of(path)
         for path in sources_of(campaign)
@@ -96,7 +102,7 @@ def _rows(job: Job, outcome: Outcome) -> Iterator[VerdictRow]:
 
 
 def as_kept(campaign: Campaign, kept: evidence.Kept) -> Campaign:
-    """The campaign as it made evidence: with its robots, judged by the requirements in there."""
+    """The campaign with the robots, requirements and timeout of its evidence."""
     if unknown := kept.specs.keys() - campaign.robots.keys():
         raise RvmonError(f"{campaign.name} has no robot {', '.join(sorted(unknown))}")
     robots = {name: replace(campaign.robots[name], spec=spec) for name, spec in kept.specs.items()}
@@ -106,7 +112,7 @@ def as_kept(campaign: Campaign, kept: evidence.Kept) -> Campaign:
 def played_again(
     campaign: Campaign, kept: evidence.Kept, chosen: Sequence[str], jobs: int
 ) -> Iterator[VerdictRow]:
-    """Play tests of evidence again; their code is not measured."""
+    """Play the chosen tests of evidence again, without measuring code coverage."""
     tests = []
     for name in chosen:
         robot, _, test = name.partition("/")

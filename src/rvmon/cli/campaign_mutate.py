@@ -1,4 +1,4 @@
-"""The command `mutate` of a campaign: which small wrong changes do its tests see?"""
+"""The command `mutate` of a campaign: measures which small faults its tests detect."""
 
 from __future__ import annotations
 
@@ -31,11 +31,16 @@ from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.files import output_folder, write_whole
 from rvmon.report.printer import Printer, text_of
 
-MOST_LISTED = 10  # survivors of a kind that the terminal shows; files have all
+MOST_LISTED = 10  # the most survivors of a kind printed to a terminal; files list all
 
 
 def mutate(campaign: Campaign, robot: str, strategies: Sequence[str], arguments: Namespace) -> int:
-    """Play suites on mutants of a robot's code, show and keep the scores, return an exit code."""
+    """Play suites on mutants of a robot's code and requirements; print and write the scores.
+
+    Returns:
+        The exit code: 1 if a mutant declared equivalent made a difference, or, with `--strict`, if
+        a mutant survives.
+    """
     mutants = _mutants(campaign, robot, arguments)
     if arguments.list:
         every: list[Mutant | SpecMutant] = [*mutants.code, *mutants.spec]

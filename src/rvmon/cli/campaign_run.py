@@ -1,4 +1,4 @@
-"""Run a campaign: plan, play, show, write; play one of its tests again, or shrink it."""
+"""The commands `run`, `replay` and `shrink` of a campaign."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ from rvmon.verdicts import Verdict
 
 
 class Conducted(Struct, frozen=True):
-    """A campaign that was run."""
+    """A finished or interrupted campaign."""
 
     results: Results
     summary: CampaignSummary
@@ -48,11 +48,11 @@ class Conducted(Struct, frozen=True):
 
     @property
     def interrupted(self) -> bool:
-        """Whether a person ended it before all was played."""
+        """Whether a person ended it before all tests were played."""
         return self.results.cut_short == INTERRUPTED
 
     def judged(self, *, strict: bool) -> gate.CampaignJudgement:
-        """Compare the campaign with what was expected of it; if `strict`, I and NT are wrong."""
+        """Compare the verdicts with the expected ones; if `strict`, I and NT are wrong."""
         robots = self.summary.robots.items()
         requirements = {name: tuple(robot.requirements) for name, robot in robots}
         shares: dict[gate.RobotRequirement, dict[str, Decision]] = {}
@@ -70,7 +70,10 @@ def conduct(
     words: Sequence[object],
     stack: ExitStack,
 ) -> Conducted:
-    """Plan, load the requirements, play, count, write; `stack` closes what was needed meanwhile."""
+    """Plan a campaign, load its requirements, play the tests, count and write the results.
+
+    Temporary folders are entered in `stack`.
+    """
     if arguments.shard is not None and not arguments.out:
         raise RvmonError("--shard keeps its results in a folder: name it with --out")
     if arguments.shard is not None and arguments.evidence:
@@ -82,7 +85,7 @@ def conduct(
             chosen = plan_of_folder(campaign, arguments.suite)
         else:
             chosen = plan(campaign, strategies, tests=arguments.tests, seed=arguments.seed)
-    # Wrong requirements, and coverage models, are reported before anything is played.
+    # Errors in requirements and coverage models are reported before any test is played.
     specs = campaign.requirements
     for name in campaign.robots if folder is not None else ():
         coverage_model(campaign, name)
@@ -103,7 +106,8 @@ def conduct(
         if kept.known:
             warn(f"{len(kept.known)} of {planned} tests were played before")
     jobs, spool = arguments.dask or arguments.jobs, None
-    if folder is not None and arguments.pages == "all":  # each is recorded as it is played
+    # For pages of all runs, each run is recorded when it is played, not played again.
+    if folder is not None and arguments.pages == "all":
         spool = Path(stack.enter_context(TemporaryDirectory(prefix="rvmon-")))
     with bar("tests", planned) as show:
         results = execute(chosen, jobs=jobs, kept=kept, progress=show, spool=spool)
@@ -126,7 +130,7 @@ def conduct(
 
 
 def _refuse_nothing(chosen: Plan) -> None:
-    """Say why no test is to be played."""
+    """Raise the error that the plan has no test, with the reason."""
     tests = [test for several in chosen.tests.values() for test in several]
     robots = " and ".join(chosen.campaign.robots)
     written_for = " and ".join(sorted({test.robot for test in tests if test.robot is not None}))
@@ -143,7 +147,16 @@ def written(
     again: str,
     spool: Path | None = None,
 ) -> Conducted:
-    """Count what came out, and write it to a folder, if any; `spool` has what was recorded."""
+    """Count the results and write them to `folder`, if given.
+
+    Args:
+        results: the outcomes of all played tests.
+        specs: the requirements by robot.
+        folder: the output folder; `None`: nothing is written.
+        arguments: the command line.
+        again: the command line that repeats the run, for pages.
+        spool: folder with the recordings of runs; `None`: runs are played again for their pages.
+    """
     campaign = results.plan.campaign
     summary = summarise(results, specs)
     tables = campaign.presentation.tables(summary)
@@ -177,7 +190,7 @@ def written(
 
 
 def show(campaign: Campaign, conducted: Conducted, form: str) -> None:
-    """Print a campaign's figures."""
+    """Print the tables of a campaign as text or JSON."""
     summary = conducted.summary
     if form == "json":
         say_json(
@@ -197,17 +210,17 @@ def show(campaign: Campaign, conducted: Conducted, form: str) -> None:
 
 
 def page_printer() -> Printer:
-    """Prints to the terminal; elsewhere as wide as the files of a campaign are."""
+    """A printer to standard output; if that is no terminal, as wide as the files of a campaign."""
     return Printer(width=None if sys.stdout.isatty() else TEXT_WIDTH)
 
 
-SHOWN = 20  # lines about what is wrong; `--junit` has all of them
+SHOWN = 20  # the most deviations printed; `--junit` writes all
 
 
 def is_as_expected(
     campaign: Campaign, judgement: gate.CampaignJudgement, arguments: Namespace
 ) -> bool:
-    """Print, and write as JUnit XML, what a campaign came to; return whether all is as expected."""
+    """Print all deviations, and write JUnit XML if requested; return whether there are none."""
     if arguments.junit is not None:
         write_file(arguments.junit, gate.junit_xml(campaign.name, judgement))
     for what, count in judgement.known.items():
@@ -221,7 +234,10 @@ def is_as_expected(
 
 
 def replay(campaign: Campaign, arguments: Namespace) -> int:
-    """Play a test file again, judge it, and return an exit code: 1 if a requirement failed."""
+    """Play a test file, judge it, and return an exit code: 1 if a requirement failed.
+
+    With `--expected`, the exit code is 1 if a verdict is not the expected one.
+    """
     job = _job(campaign, arguments)
     robot = campaign.robots[job.robot]
     spec = campaign.requirements_of(job.robot)
@@ -245,7 +261,7 @@ def replay(campaign: Campaign, arguments: Namespace) -> int:
         ]
         command = campaign_text.typed(campaign.program, words)
         page = replay_page(played, job.robot, spec, command=command, others=others)
-        # The file is named after the test's file: what it says inside is no path.
+        # Named after the test's file, because the name inside the test is not a safe path.
         name = Path(arguments.test).stem
         write_whole(folder / f"{name}.html", page)
         lines = [json.dumps({"t_ns": sample.t, **sample.values}) + "\n" for sample in judged[1]]
@@ -261,11 +277,11 @@ def replay(campaign: Campaign, arguments: Namespace) -> int:
 
 
 def shrink_file(campaign: Campaign, arguments: Namespace) -> int:
-    """Shrink a test file, show what is left, and return an exit code: 1 if it does not fail."""
+    """Shrink a test file, print the result, and return an exit code: 1 if it does not fail."""
     job, requirement = _job(campaign, arguments), arguments.requirement
     # A folder that cannot be written to is reported before anything is played.
     folder = output_folder(arguments.out) if arguments.out else None
-    # A smaller test may hang, or be lost, and does no harm.
+    # In a process of its own, so that a smaller test may hang or crash without harm.
     with busy("shrinking"), closing(PlayerApart(campaign, job.robot)) as player:
         smallest = shrink(job.test, player.play(job.test), player.play, requirement)
     if smallest is None:
@@ -289,7 +305,7 @@ def shrink_file(campaign: Campaign, arguments: Namespace) -> int:
 
 
 def _job(campaign: Campaign, arguments: Namespace) -> Job:
-    """The test, on the robot that was asked for, else its own, else the campaign's first."""
+    """The test on the robot of `--robot`, else on its own, else on the campaign's first."""
     test = load_test(arguments.test, campaign.test)
     name = arguments.robot or test.robot or next(iter(campaign.robots))
     if name not in campaign.robots:

@@ -1,4 +1,4 @@
-"""`rvmon check` and `format`: what is wrong in specifications, and their canonical layout."""
+"""`rvmon check` and `format`: errors in specifications, and their canonical layout."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from rvmon.texts import cannot_read, counted, text_of_file, text_of_input
 
 
 def run_check(arguments: argparse.Namespace) -> int:
-    """Check, print the findings, and return the exit code."""
+    """Check specifications, print the diagnostics, and return the exit code."""
     constants = constants_of(arguments.const)
     findings: list[Diagnostic] = []
     remarks: list[str] = []
@@ -44,7 +44,7 @@ def run_check(arguments: argparse.Namespace) -> int:
                 more, remark = _analysed(checked, arguments.seconds)
             findings += more
             remarks += remark
-    findings = list(dict.fromkeys(findings))  # a file may be imported by several
+    findings = list(dict.fromkeys(findings))  # several specifications may import the same file
     _show(arguments.format, findings)
     if arguments.format == "text":
         if remarks:
@@ -59,7 +59,7 @@ def run_check(arguments: argparse.Namespace) -> int:
 def _checked(
     text: str, name: str, constants: Mapping[str, str]
 ) -> tuple[CheckedSpec | None, Sequence[Diagnostic]]:
-    """The specification, or nothing if it is unfit for use, and what is to be reported about it."""
+    """The specification, `None` if it has errors, and its diagnostics."""
     directory = None if name == "-" else Path(name).parent
     shown = "<stdin>" if name == "-" else name
     try:
@@ -69,7 +69,7 @@ def _checked(
 
 
 def _analysed(checked: CheckedSpec, seconds: float) -> tuple[Sequence[Diagnostic], list[str]]:
-    """The findings of an analysis, and in words timelines of conflicts and undecided questions."""
+    """The diagnostics of an analysis, and lines with timelines and undecided questions."""
     from rvmon.analysis.shortest_examples import analyse
     from rvmon.monitor.compiled_spec import compile_spec
     from rvmon.report.explain_text import analysis_lines
@@ -79,7 +79,7 @@ def _analysed(checked: CheckedSpec, seconds: float) -> tuple[Sequence[Diagnostic
 
 
 def _bound(path: str, checked: CheckedSpec) -> list[str]:
-    """Remarks on a binding: names left to the topics' names, and names fed by the same field."""
+    """Remarks on a binding: names that it does not bind, and signals fed by the same field."""
     from rvmon.recordings.binding import load_binding
 
     bounds = load_binding(path, checked).bounds
@@ -104,7 +104,7 @@ def _show(form: str, findings: list[Diagnostic]) -> None:
             warn(render_concise(findings))
         case "text" if findings:
             text = rendered(findings)
-            # Nothing of others is left in it that could steer a terminal.
+            # Written directly: `rendered` has already escaped all text that is not ours.
             sys.stderr.write(f"{coloured(text) if wants_colour(sys.stderr) else text}\n")
 
 
@@ -116,7 +116,7 @@ def _summary(files: int, findings: list[Diagnostic]) -> str:
 
 
 def memory_lines(spec: CheckedSpec) -> list[str]:
-    r"""A line for each window of each requirement, and one for their sum, in bytes.
+    r"""The memory of each requirement's windows in bytes, a line per window and one for the sum.
 
     >>> import rvmon
     >>> text = "event e\nrequirement R\n  always count(e, 5 s) <= 3\n"
@@ -159,7 +159,7 @@ def _of(window: WindowValue) -> str:
 
 
 def run_format(arguments: argparse.Namespace) -> int:
-    """Lay out, and return the exit code."""
+    """Rewrite specifications in the canonical layout, and return the exit code."""
     from rvmon.language.formatter import format_text
 
     changed = wrong = 0

@@ -1,4 +1,4 @@
-"""`rvmon clip`: a recording cut around an attempt."""
+"""`rvmon clip`: cut a recording around an attempt."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 def run_clip(arguments: argparse.Namespace) -> int:
-    """Find the attempt, cut the recording, judge the piece, and return the exit code."""
+    """Find the attempt, cut the recording, judge the cut, and return the exit code."""
     data = arguments.data
     out, case = _places(arguments)
     if case is not None and arguments.attempt is None:
@@ -115,7 +115,7 @@ def _write_case(arguments: argparse.Namespace, out: str, place: str, attempt: At
 
 
 def _report(spec: Spec, arguments: argparse.Namespace, trace: str, name: str) -> Report:
-    """The report of a recording, even of one that breaks off."""
+    """The report of a recording; if it breaks off, of the attempts decided before."""
     options = Options((name,), allow_missing=reading.allowed_names(arguments.allow_missing))
     judged = judge(spec, trace, options, is_alone=True)
     if judged.report is not None:
@@ -127,7 +127,7 @@ def _report(spec: Spec, arguments: argparse.Namespace, trace: str, name: str) ->
 
 
 def _piece(spec: Spec, arguments: argparse.Namespace, attempt: Attempt | None) -> Piece:
-    """The piece to cut out, with the values carried into it."""
+    """The piece to cut out, with the values carried to its start."""
     recording = reading.opened(spec, arguments.data)
     ordered = spec.checked.max_delay is None
     start, stop = -TIME_LIMIT, TIME_LIMIT
@@ -135,7 +135,7 @@ def _piece(spec: Spec, arguments: argparse.Namespace, attempt: Attempt | None) -
         start = _begin(spec, attempt) - arguments.before
         decided = attempt.decided
         if decided is not None:
-            # Time alone decides nothing in a recording: something has to come behind.
+            # In a recording only a sample advances time, so the cut needs one after the decision.
             stop = max(decided + arguments.after, _first_from(decided, recording.pieces()))
     start = start if arguments.start is None else arguments.start
     stop = stop if arguments.stop is None else arguments.stop
@@ -149,7 +149,7 @@ def _piece(spec: Spec, arguments: argparse.Namespace, attempt: Attempt | None) -
 
 
 def _first_from(instant: int, pieces: Iterable[Batch | Sample]) -> int:
-    """The first instant of a recording that is not before one; that one itself, without any."""
+    """The first instant of a recording at or after `instant`; `instant` itself if there is none."""
     for piece in pieces:
         if last_of(piece) >= instant:
             times = [piece.t] if isinstance(piece, Sample) else piece.times
@@ -158,7 +158,7 @@ def _first_from(instant: int, pieces: Iterable[Batch | Sample]) -> int:
 
 
 def _begin(spec: Spec, attempt: Attempt) -> int:
-    """Its trigger; of an episode, which may have lasted for hours, when that began what failed."""
+    """The trigger; in an episode, which may have lasted for hours, the start of what failed."""
     blame = attempt.blame
     if blame is None or spec.requirements[attempt.requirement].mode is Mode.UPON:
         return attempt.triggered
@@ -166,10 +166,10 @@ def _begin(spec: Spec, attempt: Attempt) -> int:
 
 
 def _same(spec: Spec, attempt: Attempt, report: Report, piece: Piece) -> Attempt | None:
-    """The attempt on the piece that is the same as one on the whole recording, and ends alike.
+    """The attempt on the piece that equals `attempt` on the whole recording; `None` if none does.
 
-    An episode that had begun before begins with the piece; what was settled by the end of the
-    recording is settled by the piece's.
+    An episode that started before the piece starts with it. An attempt settled by the end of the
+    recording is settled by the end of the piece.
     """
     is_episode = spec.requirements[attempt.requirement].mode is Mode.WHENEVER
     by_end = attempt.decision is not Decision.PREFIX
@@ -191,7 +191,7 @@ def _same(spec: Spec, attempt: Attempt, report: Report, piece: Piece) -> Attempt
 def _warn_of_another(
     data: str, place: str, attempt: Attempt, report: Report, copied: Copied
 ) -> None:
-    """Say that the attempt is not the same on the piece, and what to do."""
+    """Warn that the attempt differs on the piece, with the option that may help."""
     verdict = report.verdicts[attempt.requirement]
     if attempt.decided is not None and copied.last < attempt.decided:
         why = f"it was decided at {format_stamped(attempt.decided, attempt.origin)}: a later --to"

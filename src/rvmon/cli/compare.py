@@ -1,4 +1,4 @@
-"""`rvmon compare`: what has changed between two files of verdicts."""
+"""`rvmon compare`: show the changes between two files of verdicts."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from rvmon.texts import counted
 from rvmon.verdicts.compare import Change, Comparison, Difference, compare
 from rvmon.verdicts.table_file import read_results
 
-LISTED = 20  # differences of one kind that the text lists
+LISTED = 20  # the most differences of one kind that the text lists
 
 
 def run_compare(arguments: argparse.Namespace) -> int:
-    """Read, compare, show, and return the exit code."""
+    """Compare two files, print the differences, and return the exit code."""
     with busy("comparing verdicts"):
         comparison = compare(read_results(arguments.before), read_results(arguments.after))
     only = comparison.only_before or comparison.only_after

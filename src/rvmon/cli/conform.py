@@ -1,4 +1,4 @@
-"""`rvmon conform`: hold recorded runs against a network of timed automata."""
+"""`rvmon conform`: check whether recordings are runs of a network of timed automata."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from rvmon.trace.stamps import stamps_of
 
 
 def run_conform(arguments: argparse.Namespace) -> int:
-    """Compare, show, and return the exit code."""
+    """Compare recordings with the model, print the answers, and return the exit code."""
     network = load_network(arguments.model)
     labels = labels_of(network)
     chosen = _chosen(arguments.observe, labels)
@@ -84,7 +84,11 @@ def _compare(
 
 
 def _some(shown: frozenset[str], path: str, labels: tuple[str, ...]) -> frozenset[str]:
-    """The labels that a recording shows; where there are none, any model would explain it."""
+    """The labels that a recording shows; with none, any model would explain it.
+
+    Raises:
+        TraceError: it shows no label.
+    """
     if not shown:
         known = f"its actions are {', '.join(labels)}" if labels else "no edge of it has a label"
         raise TraceError(

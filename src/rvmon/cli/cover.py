@@ -1,4 +1,4 @@
-"""`rvmon cover`: what the tests of databases have covered."""
+"""`rvmon cover`: show the coverage of the tests in databases."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 
 
 def run_cover(arguments: argparse.Namespace) -> int:
-    """Read, show, and return the exit code."""
+    """Read databases, print their coverage, and return the exit code."""
     from rvmon.coverage.database import merge, read
     from rvmon.report.coverage_summary import Summary
 
     refuse_over([arguments.report, arguments.ucis], [*arguments.databases, arguments.compare])
     with busy("reading databases"):
-        # All are read before merging, so that contradicting models change no file.
+        # All are read before merging, so that contradictory models leave every file unchanged.
         coverage = read(arguments.databases)
         if arguments.merge is not None:
             merge(arguments.databases, arguments.merge)
@@ -56,7 +56,7 @@ def run_cover(arguments: argparse.Namespace) -> int:
 
 
 def _earlier(arguments: argparse.Namespace, coverage: Coverage) -> Coverage:
-    """The coverage to compare with: of a file, or of a campaign in the shown file."""
+    """The coverage to compare with: from a file, or of a campaign in the shown databases."""
     from rvmon.coverage.database import read
 
     if Path(arguments.compare).exists() or arguments.compare not in coverage.campaigns:
@@ -109,7 +109,7 @@ def _print(summary: Summary, arguments: argparse.Namespace, groups: Sequence[Gro
 
 
 def _code(summary: Summary, arguments: argparse.Namespace) -> int:
-    """1 if what was asked for is not reached."""
+    """The exit code: 1 if `--require` or `--strict` is not met."""
     is_held = arguments.strict or arguments.require is not None
     wrong = is_held and bool(summary.illegal or summary.contradicted)
     if arguments.require is not None:

@@ -1,4 +1,4 @@
-"""The arguments of the commands that evaluate, apart from their work: help starts fast."""
+"""The arguments of the commands that evaluate; separate from their work, so that help is fast."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One recording after the other, or side by side: read, judged, kept even where it breaks off."""
+"""Evaluation of recordings, in sequence or in parallel, with coverage and post-analysis."""
 
 from __future__ import annotations
 
@@ -42,20 +42,20 @@ class Options(Struct, frozen=True):
     """The options of judging."""
 
     only: tuple[str, ...] | None = None  # ids of the requirements, or `None` for all
-    # the instant in seconds to which recordings are judged; default their last sample
+    # the instant in seconds up to which recordings are judged; default their last sample
     until: float | None = None
-    robustness: bool = False  # whether to find the robustness of each attempt as well
+    robustness: bool = False  # whether to compute the robustness of each attempt
     # the names that recordings in columns may lack; `True`: all
     allow_missing: bool | tuple[str, ...] = False
-    # whether the whole coverage model is watched; default: coverpoints and crosses alone
+    # whether to measure the whole coverage model; default: only coverpoints and crosses
     coverage: bool = False
-    explains: bool = True  # whether anybody is told why there is no attempt, and what came late
+    explains: bool = True  # whether to look for near misses of triggers and late responses
 
 
 def spec_and_options(
     arguments: argparse.Namespace, name: str | None = None
 ) -> tuple[Spec, Options]:
-    """The specification that judges, and the options of judging."""
+    """The specification and the options of judging, from the command line."""
     loaded = load(arguments.spec, name=name, const=constants_of(arguments.const))
     spec = reading_spec(loaded, arguments)
     return spec, Options(
@@ -69,19 +69,19 @@ def spec_and_options(
 
 
 def _shows_counts_alone(arguments: argparse.Namespace) -> bool:
-    """Whether all that is shown of reports is how many verdicts there are."""
-    asked = vars(arguments)  # evidence that is evaluated again has none of these
+    """Whether the output contains only numbers of verdicts, no explanations."""
+    asked = vars(arguments)  # with `get`, as the arguments kept in evidence lack these options
     is_kept = any(asked.get(name) for name in ("out", "report", "junit", "mcap", "evidence"))
     return bool(asked.get("quiet") and asked.get("format") == "text" and not is_kept)
 
 
 class RecordingCoverage:
-    """Finds coverage on one recording, beside judging it."""
+    """Measures the coverage of one recording while it is judged."""
 
     def __init__(
         self, spec: Spec, options: Options, recording: FileRecording, end: int | None
     ) -> None:
-        self.hits: Hits = {}  # what was hit of the coverage model, if all of it was asked for
+        self.hits: Hits = {}  # the hits of the whole coverage model, with `options.coverage`
         self._spec = spec
         self._options = options
         self._end = TIME_LIMIT if end is None else end
@@ -92,7 +92,7 @@ class RecordingCoverage:
             self._run = spec.coverage_model.run(source, requirements=options.coverage)
 
     def passing(self, found: Iterable[Batch | Sample]) -> Iterator[Batch | Sample]:
-        """The pieces, unchanged; an error of their coverage is raised by `finished`."""
+        """Pass the pieces through unchanged; `finished` raises any error of their coverage."""
         for piece in found:
             if self._run is not None and self._fault is None:
                 try:
@@ -103,7 +103,11 @@ class RecordingCoverage:
             yield piece
 
     def finished(self) -> dict[str, Any]:
-        """What was found, for the report, when all of the recording went by."""
+        """The fields for the report, after the whole recording has passed.
+
+        Raises:
+            TraceError: the coverage could not be measured.
+        """
         if self._run is None:
             return {}
         from rvmon.coverage import covered_groups, illegal
@@ -119,17 +123,16 @@ class RecordingCoverage:
 
 
 class Judged(Struct, frozen=True):
-    """One recording with what is known of it."""
+    """One evaluated recording."""
 
     trace: str  # its path
-    report: Report | None  # the verdicts, or `None` if the recording broke off at an error
-    # for a broken recording, the attempts decided before the place of the error
-    before: tuple[Attempt, ...] = ()
-    error: str = ""  # the fault of the recording
+    report: Report | None  # the verdicts, or `None` if the recording broke off with an error
+    before: tuple[Attempt, ...] = ()  # the attempts decided before the error
+    error: str = ""  # the error of the recording
     missing: tuple[str, ...] = ()  # the names that requirements read and that it lacks
-    hits: Hits = field(default_factory=dict)  # in the coverage model, where that was asked for
-    seconds: float = 0.0  # its duration
-    text: str = ""  # the report as JSON, if the process that judged was asked for it
+    hits: Hits = field(default_factory=dict)  # in the coverage model, with `--coverage`
+    seconds: float = 0.0  # the time that evaluation took
+    text: str = ""  # the report as JSON, if the worker process wrote it
 
 
 def judge_all(
@@ -140,12 +143,16 @@ def judge_all(
     *,
     writes_json: bool = False,
 ) -> Iterator[Judged]:
-    """Judge recordings, in their order.
+    """Judge recordings; results come in the order of `traces`.
 
-    If one of several processes is lost, or a scheduler of Dask that `jobs` names, so are the
-    verdicts on what comes behind the last that was judged in order, and each of these says so. With
-    `writes_json` processes write the reports as JSON, too: this one alone would take a tenth of the
-    time for all of them, while the others rest.
+    Args:
+        spec: the specification.
+        traces: paths of the recordings.
+        options: how to judge.
+        jobs: the number of processes, or the address of a Dask scheduler. If a process is lost, all
+            recordings after the last one yielded have an error instead of a report.
+        writes_json: whether worker processes also write the reports as JSON. If this process wrote
+            all of them, that would take a tenth of the whole time, in which the others were idle.
     """
     done = 0
     is_alone = len(traces) == 1
@@ -154,13 +161,13 @@ def judge_all(
     planned: PlannedCore | None = None
     if is_apart:
         begin = partial(partial, _judge_apart, spec, options=options, writes_json=writes_json)
-        planned = spec.planned(options.only)  # for all that go on from here
+        planned = spec.planned(options.only)  # reports come without the plan, and get it here
     try:
         with bar("recordings", len(traces)) as show:
             jobs = jobs if isinstance(jobs, str) else min(jobs, len(traces))
             for one in execute(traces, begin, jobs=jobs, what="recording"):
                 done += 1
-                if not is_alone:  # that one shows how far it is read
+                if not is_alone:  # a single recording shows the share that is read
                     show(done)
                 if planned is not None and one.report is not None:
                     give_plan(one.report, planned)
@@ -173,7 +180,7 @@ def judge_all(
 
 
 def _judge_apart(spec: Spec, trace: str, options: Options, *, writes_json: bool) -> Judged:
-    """The same for another process, which has the plan."""
+    """`judge` in a worker process; returns the report without the plan, which the parent has."""
     found = judge(spec, trace, options)
     if found.report is None:
         return found
@@ -183,7 +190,7 @@ def _judge_apart(spec: Spec, trace: str, options: Options, *, writes_json: bool)
 
 @without_copies()
 def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -> Judged:
-    """Judge one recording; if it is broken, what was decided before the break stays decided."""
+    """Judge one recording; if it breaks off, the result has the attempts decided before."""
     before: list[Attempt] = []
     began = time.monotonic()
     try:
@@ -204,7 +211,8 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
         source = Source(
             recording,
             end,
-            is_cut=options.until is not None,  # what a recording says of its end may be wrong
+            # The end that a recording states may be wrong, so only `--until` cuts it.
+            is_cut=options.until is not None,
             shown=lambda found: coverage.passing(show(found)),
             taken=remembered.take if is_noted else None,
         )
@@ -230,8 +238,8 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
 
 
 def as_known(judged: Judged, case: Case) -> Judged:
-    """The judged reproducer, with the name by which people know its recording."""
-    name = name_of(case.recording)  # it is unpacked only for a moment
+    """The judged reproducer, with the recording's own name instead of its temporary path."""
+    name = name_of(case.recording)
     report = None if judged.report is None else replace(judged.report, trace=name)
     return structs.replace(
         judged, trace=name, report=report, error=judged.error.replace(case.recording, name)
@@ -239,7 +247,7 @@ def as_known(judged: Judged, case: Case) -> Judged:
 
 
 def compare_expected(judged: Judged, case: Case) -> None:
-    """Say whether the attempt has the verdict that it had."""
+    """Print whether the attempt of a reproducer has the recorded verdict."""
     attempts = [] if judged.report is None else judged.report.attempts
     found = next((attempt for attempt in attempts if attempt.name == case.attempt), None)
     if found is None or (found.verdict, found.decided) != (case.verdict, case.decided):

@@ -1,4 +1,4 @@
-"""`rvmon evidence`: does evidence still hold, which `rvmon run --evidence` kept?"""
+"""`rvmon evidence`: check an archive written by `rvmon run --evidence` or by a campaign."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ from rvmon.verdicts.serialise import VerdictRow
 from rvmon.verdicts.table_file import csv_bytes
 
 Again = Callable[[evidence.Kept, Sequence[str], int], Iterable[VerdictRow]]
-"""Judges recordings, or plays tests, again, on so many processes."""
+"""Evaluates the named recordings or tests of evidence again, with this number of processes."""
 
 
 def run_evidence(arguments: argparse.Namespace) -> int:
-    """Verify, say what was found, and return the exit code."""
+    """Check an archive, print the differences, and return the exit code."""
     differ: list[str] = []
     unchecked: list[str] = []
     try:
@@ -93,7 +93,7 @@ def _verify(
 
 
 def _shown(recordings: Mapping[str, str]) -> Iterator[tuple[str, str]]:
-    """Each recording with its hash, and how many have been looked at."""
+    """The recordings with their hashes, with a progress bar."""
     with bar("recordings", len(recordings)) as show:
         for count, item in enumerate(recordings.items(), start=1):
             yield item
@@ -101,7 +101,11 @@ def _shown(recordings: Mapping[str, str]) -> Iterator[tuple[str, str]]:
 
 
 def _expect_derived(kept: evidence.Kept) -> None:
-    """See that the matrix follows from requirements and verdicts."""
+    """Check that the trace matrix follows from requirements and verdicts.
+
+    Raises:
+        TamperedError: it does not.
+    """
     const = constants_of(kept.about.judging.const if kept.about.judging else ())
     specs = {robot: load(path, const=const) for robot, path in kept.specs.items()}
     try:
@@ -122,7 +126,7 @@ def _judged_again(kept: evidence.Kept, chosen: Sequence[str], jobs: int) -> Iter
 def _differences(
     item: str, before: Sequence[Row], now: Sequence[Row], columns: Sequence[str]
 ) -> Iterator[str]:
-    """The changed verdicts of a recording or a test, a sentence for each attempt."""
+    """The changes of a recording or test, one sentence per attempt."""
     was, current = _by_attempt(before), _by_attempt(now)
     for name in {**was, **current}:
         old, new = was.get(name), current.get(name)
@@ -142,7 +146,7 @@ def _by_attempt(rows: Sequence[Row]) -> dict[str, Row]:
 
 
 def is_recording(path: str) -> bool:
-    """Whether there is a file, a folder that is a recording, or several: else it has no hash."""
+    """Whether the path names existing recordings on this machine, which can be hashed."""
     try:
         return all(Path(one).is_file() or form_of_folder(one) for one in files_of(path))
     except (OSError, ValueError, TraceError):
@@ -152,7 +156,13 @@ def is_recording(path: str) -> bool:
 def begun(
     arguments: argparse.Namespace, traces: Sequence[str]
 ) -> tuple[dict[str, bytes], list[str], dict[str, str]]:
-    """What `texts_of` gives before and after judging, and the SHA-256 of the recordings by path."""
+    """The result of `texts_of`, and the SHA-256 of the recordings by path.
+
+    It is computed before and after judging, to detect changes.
+
+    Raises:
+        RvmonError: a recording does not exist or is named twice, or a file cannot be read.
+    """
     hashes: dict[str, str] = {}
     for trace in traces:
         if not is_recording(trace) or shown_path(trace) in hashes:
@@ -167,7 +177,11 @@ def write_run(
     judged: Sequence[Judged],
     before: tuple[dict[str, bytes], list[str], dict[str, str]],
 ) -> None:
-    """Write the evidence of recordings, unless an input has changed meanwhile."""
+    """Write the evidence of recordings.
+
+    Raises:
+        RvmonError: an input has changed since `begun`, or the file cannot be written.
+    """
     if begun(arguments, list(before[2])) != before:
         raise RvmonError("--evidence: an input has changed meanwhile: run it again")
     entries, (main, *binding), recordings = before
@@ -187,7 +201,7 @@ def write_run(
 
 
 def rows_of_judged(judged: Sequence[Judged]) -> Iterator[VerdictRow]:
-    """The verdicts, and what was hit of coverpoints and must not be."""
+    """The verdicts as rows, and a row for each illegal hit."""
     yield from rows_of(judged)
     for result in judged:
         for hit in () if result.report is None else result.report.illegal:

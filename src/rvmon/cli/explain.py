@@ -1,4 +1,4 @@
-"""`rvmon explain`: a requirement, the difference of two, or a diagnostic's code."""
+"""`rvmon explain`: explain a requirement, the difference of two, or a diagnostic code."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from rvmon.session import Spec
 
 _CODE = re.compile(r"(RV|TA)\d+|codes|[a-z]+(-[a-z]+)+", re.IGNORECASE)
-"""A diagnostic's code, in words, or the word for all."""
+"""Matches the code of a diagnostic, its name in words, or `codes` for the list of all."""
 
 
 def run_explain(arguments: argparse.Namespace) -> int:
-    """Explain, and return the exit code."""
+    """Print the explanation, and return the exit code."""
     if not Path(arguments.subject).exists() and _CODE.fullmatch(arguments.subject):
         from rvmon.analysis.diagnostic_codes import code_list, page_of
 

@@ -1,4 +1,4 @@
-"""`rvmon export`: a specification or a model in the form that other programs take."""
+"""`rvmon export`: write a specification or model in the formats of other programs."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _OF_MODELS = ("dot", "uppaal")
 
 
 def run_export(arguments: argparse.Namespace) -> int:
-    """Make the texts, write or print them, and return the exit code."""
+    """Write or print the exported texts, and return the exit code."""
     refuse_over([arguments.output], [arguments.subject])
     if Path(arguments.subject).suffix in (".ta", ".xml"):
         text = _model_text(arguments)
@@ -45,7 +45,7 @@ def run_export(arguments: argparse.Namespace) -> int:
 
 
 def _model_text(arguments: argparse.Namespace) -> str:
-    """A network of timed automata; of the queries that UPPAAL cannot express it is told."""
+    """The text of a network of timed automata; warns of queries that UPPAAL cannot express."""
     from rvmon.models.language.load import load_network
     from rvmon.models.uppaal_xml import left_out, network_dot, uppaal_xml
 
@@ -84,10 +84,10 @@ def _write_c(spec: Spec, ids: Sequence[str] | None, output: str | None) -> None:
 
 
 def _automata(spec: Spec, ids: Sequence[str] | None, form: str) -> str:
-    """The automata that can be written; of the others it is said why they are left out.
+    """The automata of the requirements that have one; warns of the others, with the reasons.
 
     Raises:
-        RvmonError: there is none; the message says why of the first.
+        RvmonError: no requirement has one; the message gives the reason of the first.
     """
     from rvmon.analysis.hoa import automaton_dot, automaton_json, hoa
     from rvmon.monitor.compiled_spec import compile_spec

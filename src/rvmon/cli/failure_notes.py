@@ -1,4 +1,4 @@
-"""What is told of failures, noted as a long recording is judged, which then is read only once."""
+"""Notes on failures, taken while a long recording is judged, so that it is read only once."""
 
 from __future__ import annotations
 
@@ -25,24 +25,24 @@ if TYPE_CHECKING:
     from rvmon.verdicts.attempt import Attempt
 
 MOST_LATE = 1000
-"""Failures of a requirement of which it is looked up whether what they awaited came late."""
+"""The most failures of a requirement for which late responses are looked up."""
 
 MOST_LATE_IN_ALL = 10_000
-"""The same of all requirements, of which each gets its share, and at least one."""
+"""The most for all requirements together; each gets an equal share, at least one."""
 
 MOST_VALUES = 3  # the most signals of a failed part whose values are shown; `rvmon why` shows all
 
 
 def looked_up(requirement: Requirement, failed: int) -> int:
-    """The failures of a requirement that are looked up, where so many requirements failed."""
-    # What was captured, and each instance, takes a pass over the recording by itself.
+    """The number of failures of a requirement to look up, if `failed` requirements failed."""
+    # Each set of captured values, and each instance, takes its own pass over the recording.
     if requirement.for_each or requirement.captures:
         return SHOWN_PER_REQUIREMENT
     return max(1, min(MOST_LATE, MOST_LATE_IN_ALL // failed))
 
 
 class FailureNotes:
-    """Notes on the failures of a recording as it is judged."""
+    """Notes on the failures of a recording, taken while it is judged."""
 
     def __init__(
         self, spec: Spec, recording: FileRecording, only: Sequence[str] | None, core: native.Monitor
@@ -54,13 +54,13 @@ class FailureNotes:
         self._records = 0
         self._failed: Counter[str] = Counter()
         self._arrivals = None if recording.outages else Arrivals(spec.checked, recording.names)
-        # by requirement and number of the attempt, when what it awaited came after all, ticks;
-        # `None`: it did not, or nothing was awaited. It lacks what cannot be known so
+        # by requirement and number of the attempt, the instant of a late response, ticks; `None`:
+        # there was none, or nothing was awaited. Attempts that need a second reading are absent
         self.late = {} if self._arrivals is None else self._arrivals.found
-        self.values = values_at(spec)  # the values at failures; they lack what cannot be known so
+        self.values = values_at(spec)  # the values at failures, without those that need a reading
 
     def take(self, pieces: Sequence[Batch | Sample], until: int) -> None:
-        """Take the next pieces that were judged, which tell all up to an instant (ticks)."""
+        """Take the pieces that were judged next; they are complete up to `until` (ticks)."""
         self._records, attempts = self._core.failed(self._records, bytes(self._wanted))
         for attempt in attempts:
             self._ask_about(attempt)
@@ -70,7 +70,7 @@ class FailureNotes:
             self._arrivals.take(pieces, until)
 
     def finish(self, pieces: Sequence[Batch | Sample], end: int) -> None:
-        """Take the last pieces of a recording that ends at an instant (ticks)."""
+        """Take the last pieces of a recording that ends at `end` (ticks)."""
         self.take(pieces, end)
         self.values.finish()
 
@@ -78,7 +78,7 @@ class FailureNotes:
         name = attempt.requirement
         requirement = self._spec.requirements[name]
         self._failed[name] += 1
-        # The share of a requirement gets less as others fail, never more.
+        # As more requirements fail, the share of each shrinks, so a full one stays full.
         if self._failed[name] > looked_up(requirement, len(self._failed)):
             self._wanted[self._numbers[name]] = 0
             return
@@ -89,7 +89,7 @@ class FailureNotes:
 
 
 def values_at(spec: Spec) -> ValuesAt:
-    """Finds the values of signals at failures."""
+    """A finder for the values, at failures, of the signals that consequents read."""
     checked = spec.checked
     names = {
         name
@@ -102,9 +102,9 @@ def values_at(spec: Spec) -> ValuesAt:
 
 
 def names_blamed(spec: Spec, attempt: Attempt) -> Set[str]:
-    """The signals of which the value tells why it failed, if it is known what was to blame.
+    """The signals whose values explain a failure with a known blame; empty if there are too many.
 
-    Not what is itself true or false, nor what was measured over a window.
+    Excluded are `bool` signals and names measured over a window.
     """
     assert attempt.blame is not None, "only these are asked for"
     requirement = spec.requirements[attempt.requirement]

@@ -1,4 +1,4 @@
-"""`rvmon look` and `init`: what a recording holds, and files that begin with it."""
+"""`rvmon look` and `init`: show a recording, and write first files for it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def run_look(arguments: argparse.Namespace) -> int:
-    """Look, show or write, and return the exit code."""
+    """Print the profile of a recording or write it as a page, and return the exit code."""
     from rvmon.recordings.starter.profile import bound_profile, profile_of
     from rvmon.report.look_page import look_page, print_look
     from rvmon.report.printer import Printer
@@ -46,14 +46,14 @@ def run_look(arguments: argparse.Namespace) -> int:
 
 
 def _refuse_output(arguments: argparse.Namespace) -> None:
-    """Say before a recording is looked over that what is written would be in its place."""
+    """Refuse, before the recording is read, an output that would overwrite an input."""
     from rvmon.recordings.places import files_of
 
     refuse_over([arguments.output], [arguments.spec, *files_of(arguments.data)])
 
 
 def run_init(arguments: argparse.Namespace) -> int:
-    """Look the recording over, write, and return the exit code."""
+    """Write a first specification, binding or campaign, and return the exit code."""
     if (arguments.data is None) == (arguments.campaign is None):
         raise RvmonError("error: name a recording, or --campaign with a folder")
     if arguments.campaign is not None:
@@ -86,7 +86,7 @@ def run_init(arguments: argparse.Namespace) -> int:
 
 
 def _print_binding(arguments: argparse.Namespace) -> int:
-    """Propose which topics feed a specification; 1 if something is left open."""
+    """Print a proposed binding, and return the exit code: 1 if something is left open."""
     from rvmon.recordings.binding.propose import propose
     from rvmon.recordings.recording import messages_of
     from rvmon.session import load

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rvmon.session import Spec
 
 
-_LEAST = 512  # with less, libraries in C end the process as they are loaded, each in its own words
+_LEAST = 512  # megabytes; with less, C libraries abort while loading, without a clear message
 
 
 def _megabytes(text: str) -> int:
@@ -63,20 +63,20 @@ _MORE: dict[str, dict[str, Any]] = {
     "--format": {"choices": ("text", "json"), "default": "text"},
     "--max-memory": {"dest": "most_megabytes", "type": _megabytes},
 }
-ONLY = ("--only", "--severity", "--tag")  # which requirements are meant
+ONLY = ("--only", "--severity", "--tag")  # the options that select requirements
 READING = ("--time", "--map", "--nan", "--binding", "--clock")  # the options for reading recordings
 EVALUATED = ("--const", "--until", *READING, "--allow-missing")
-"""The constants, how far and how recordings are evaluated, and what they may lack."""
+"""The options for evaluating recordings."""
 
 
 def declare(parser: Parser, *names: str) -> None:
-    """Declare options, and arguments, that several commands take."""
+    """Declare options and arguments that several commands share."""
     for name in names:
         parser.option(words := _WORDS[name], _ABOUT[words], **_MORE.get(name, {}))
 
 
 def asked_ids(arguments: argparse.Namespace, spec: Spec) -> tuple[str, ...] | None:
-    """The requirements that the options `ONLY` leave; `None`: all."""
+    """The requirements selected by the options `ONLY`; `None`: all."""
     from rvmon.language.checked.names_read import labelled
 
     ids = ids_of(arguments.only, spec)
@@ -86,12 +86,16 @@ def asked_ids(arguments: argparse.Namespace, spec: Spec) -> tuple[str, ...] | No
 
 
 def names_in(text: str) -> list[str]:
-    """The names of a list with commas."""
+    """The names in a comma-separated list."""
     return [name.strip() for name in text.split(",") if name.strip()]
 
 
 def ids_of(listed: str | None, spec: Spec) -> tuple[str, ...] | None:
-    """The requirements of a list with commas; `None`: all."""
+    """The requirements in a comma-separated list; `None`: all.
+
+    Raises:
+        UnknownNameError: one does not exist, or the list is empty.
+    """
     from rvmon.language.checked.names_read import requirements_asked
 
     if listed is None:
@@ -111,14 +115,14 @@ def add_budget(parser: Parser) -> None:
 
 
 def budget_of(arguments: argparse.Namespace) -> Budget:
-    """The budget of a search."""
+    """The budget of a search, from the options of `add_budget`."""
     from rvmon.models.search.budget import Budget
 
     return Budget(arguments.max_states, arguments.max_seconds, arguments.max_memory)
 
 
 def constants_of(texts: Iterable[str]) -> dict[str, str]:
-    """The values by name.
+    """The values of `--const` by name.
 
     >>> constants_of(["T=2 s"])
     {'T': '2 s'}
@@ -128,7 +132,7 @@ def constants_of(texts: Iterable[str]) -> dict[str, str]:
 
 
 def model_constants_of(texts: Iterable[str]) -> dict[str, int]:
-    """The values by name, of a model, whose constants are whole numbers."""
+    """The values of `--const` by name for a model, whose constants are whole numbers."""
     constants = {}
     for name, value in named_values("--const", texts, form := "NAME=NUMBER, such as N=4"):
         digits = value.strip().removeprefix("-")
@@ -139,7 +143,16 @@ def model_constants_of(texts: Iterable[str]) -> dict[str, int]:
 
 
 def named_values(option: str, texts: Iterable[str], form: str) -> Iterator[tuple[str, str]]:
-    """The names and values of an option's texts, of a form that is given with an example."""
+    """Split the texts of an option into names and values.
+
+    Args:
+        option: its name, for the message.
+        texts: as `NAME=VALUE`.
+        form: the expected form with an example, for the message.
+
+    Raises:
+        RvmonError: a text has another form.
+    """
     for text in texts:
         name, _, value = text.partition("=")
         if not name.strip() or not value.strip():
@@ -148,7 +161,11 @@ def named_values(option: str, texts: Iterable[str], form: str) -> Iterator[tuple
 
 
 def refuse_over(written: Iterable[str | None], read: Iterable[str | None]) -> None:
-    """Say before anything is done that it would write over what it reads, or has written."""
+    """Refuse, before any work is done, outputs that would overwrite an input or each other.
+
+    Raises:
+        RvmonError: an output is such a file.
+    """
     known = list(filter(None, read))
     taken = set()
     for one in filter(None, written):
@@ -169,13 +186,18 @@ def _is_same_file(one: str, other: str) -> bool:
 
 @contextmanager
 def at_most(megabytes: int | None) -> Iterator[None]:
-    """Let this process, and those that it starts, take so much memory; `None`: any."""
+    """Limit the memory of this process and of those that it starts; `None`: no limit.
+
+    Raises:
+        RvmonError: the memory is not enough, with or without a limit.
+    """
     try:
         with _limited(megabytes):
             yield
     except (MemoryError, ImportError) as error:
+        # "failed to map segment": a shared library found no memory.
         if isinstance(error, ImportError) and "failed to map segment" not in str(error):
-            raise  # else there is no room for a library
+            raise
         limit = "" if megabytes is None else f", of {megabytes:,} MB: raise --max-memory"
         raise RvmonError(f"the memory is not enough{limit}") from None
 

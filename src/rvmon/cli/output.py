@@ -37,7 +37,7 @@ def say_json(text: str) -> None:
 
 
 def spell() -> None:
-    """Let signs that the encoding of the output lacks be spelled with those that it has."""
+    """Replace signs that the encoding of standard output lacks, instead of raising an error."""
 
     def spelled(error: UnicodeError) -> tuple[str, int]:
         assert isinstance(error, UnicodeEncodeError), "what is written is text"
@@ -50,8 +50,8 @@ def spell() -> None:
 
 
 def rendered(findings: Sequence[Diagnostic]) -> str:
-    """Findings in full, as wide as the terminal is."""
-    from shutil import get_terminal_size  # which most starts have no need of
+    """Diagnostics in full, as wide as the terminal."""
+    from shutil import get_terminal_size  # imported late: most commands do not need it
 
     from rvmon.diagnostics import WIDEST, render_full
 
@@ -59,19 +59,27 @@ def rendered(findings: Sequence[Diagnostic]) -> str:
 
 
 def warn(text: str) -> None:
-    """Print to standard error what a person should know."""
+    """Print a message to standard error."""
     print(shown(text), file=sys.stderr)
 
 
 T = TypeVar("T")
 
 PATIENCE_S = 1.0  # work shorter than this shows no bar
-SAMPLES_PER_LOOK = 4096  # samples between two looks at the clock
+SAMPLES_PER_LOOK = 4096  # samples between two updates of the bar
 
 
 @contextmanager
 def bar(what: str, total: float) -> Iterator[Callable[[float], None]]:
-    """Gives what is told the units done so far; a terminal sees work of over a second."""
+    """A progress bar on a terminal, for work of over a second.
+
+    Args:
+        what: the words before the bar.
+        total: the units of work.
+
+    Yields:
+        The function to call with the units done so far.
+    """
     if not sys.stderr.isatty():
         yield lambda _: None
         return
@@ -105,7 +113,11 @@ def _console() -> Console:
 
 @contextmanager
 def busy(what: str) -> Iterator[Callable[[str], None] | None]:
-    """Gives what takes other words for what is done; `None` where nobody sees them."""
+    """A spinner with a text on a terminal.
+
+    Yields:
+        The function that changes the text; `None` if standard error is no terminal.
+    """
     if not sys.stderr.isatty():
         yield None
         return
@@ -114,12 +126,12 @@ def busy(what: str) -> Iterator[Callable[[str], None] | None]:
 
 
 def shown_while_reading(recording: FileRecording, parts: Iterator[T]) -> Iterator[T]:
-    """The parts of a recording as they are read, with a progress bar."""
-    from rvmon.trace.sample import Sample  # which help has no need of
+    """Pass on the parts of a recording as they are read, with a progress bar."""
+    from rvmon.trace.sample import Sample  # imported late: help does not need it
 
     with bar(recording.path, 1.0) as show:
         for one in parts:
             yield one
-            if isinstance(one, Sample):
+            if isinstance(one, Sample):  # else it is a batch, which has thousands of rows
                 yield from islice(parts, SAMPLES_PER_LOOK)
             show(recording.fraction_read)

@@ -1,4 +1,4 @@
-"""The parser of the command line, and the numbers on it, refused before any work is done."""
+"""The command-line parser, and the types of numbers and times on the command line."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from rvmon.execute import Shard
 from rvmon.texts import did_you_mean, shown
 from rvmon.trace.time import TICKS_PER_SECOND, TICKS_PER_UNIT, ticks_of_text
 
-Subparsers: TypeAlias = "argparse._SubParsersAction[Parser]"  # the commands that a program takes
+Subparsers: TypeAlias = "argparse._SubParsersAction[Parser]"  # the commands of a program
 
 _CHOICE = re.compile(r"invalid choice: '(.*)' \(choose from (.*)\)", re.DOTALL)
 
 
 class _Help(argparse.HelpFormatter):
-    """Lists and examples keep their lines; the latter so that they can be copied."""
+    """Keeps the lines of lists, and puts each example on its own line, to be copied."""
 
     def _fill_text(self, text: str, width: int, indent: str) -> str:
         if "\n" in text:
@@ -35,7 +35,7 @@ class _Help(argparse.HelpFormatter):
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser whose complaints are short, say how it is done, and obey nothing that was given."""
+    """A parser with short error messages that name the fix and contain no terminal escapes."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(formatter_class=_Help, **options)
@@ -43,7 +43,7 @@ class Parser(argparse.ArgumentParser):
     def parse_known_args(  # type: ignore[override]  # of its overloads one is what is called
         self, args: Sequence[str] | None = None, namespace: Any = None
     ) -> Any:
-        """As argparse does; but what a subcommand does not know, that one complains of."""
+        """Parse as argparse does, but let the subcommand report arguments that it does not know."""
         parsed, rest = super().parse_known_args(args, namespace)
         if rest:
             meant = did_you_mean(rest[0].partition("=")[0], self._option_string_actions)
@@ -51,13 +51,13 @@ class Parser(argparse.ArgumentParser):
         return parsed, rest
 
     def option(self, words: str, about: str, **how: Any) -> None:
-        """Declare an option, or an argument that stands by itself.
+        """Declare an option or a positional argument.
 
         Args:
-            words: its names, and the word for its value, as in `-o --out FILE`; without one it is
-                a flag, or one of some `choices`. Of an argument that word alone, as in `FILE`.
-            about: for its help.
-            how: more for `add_argument`.
+            words: its names and the word for its value, as in `-o --out FILE`. Without that word
+                it is a flag, or has `choices`. A positional argument is that word alone: `FILE`.
+            about: its help text.
+            how: further arguments of `add_argument`.
         """
         *names, last = words.split(" ")
         if words == last and not last.startswith("-"):
@@ -71,7 +71,7 @@ class Parser(argparse.ArgumentParser):
         self.add_argument(*names, help=about, **how)
 
     def error(self, message: str) -> NoReturn:
-        """Say what is wrong and how it is done, and leave with code 2."""
+        """Print what is wrong, with an example, and exit with code 2."""
         if message.endswith("required: COMMAND"):
             self.print_help(sys.stderr)
             sys.exit(2)
@@ -97,7 +97,7 @@ def positive(text: str) -> int:
 
 
 def shard(text: str) -> Shard:
-    """Read which of how many shares of the work is to be done.
+    """Read a shard, as number and total.
 
     >>> shard("2/4")
     Shard(number=2, total=4)
@@ -109,7 +109,7 @@ def shard(text: str) -> Shard:
 
 
 def number_or_folder(text: str) -> int | Path:
-    """Read how many tests there are to be, or where they are.
+    """Read a number of tests, or a folder of tests.
 
     >>> number_or_folder("3")
     3
@@ -122,7 +122,7 @@ def number_or_folder(text: str) -> int | Path:
 
 
 TIME_FORMS = "seconds, or a number with its unit: 12.5, 500ms"
-"""What the help of each option that takes an instant or a duration says of its value."""
+"""The forms of instants and durations, for help texts."""
 
 _TIME = re.compile(r"\s*([+-]?[\d.]+(?:e[+-]?\d+)?)\s*([a-z]*)\s*", re.ASCII)
 

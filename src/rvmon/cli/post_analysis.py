@@ -1,4 +1,4 @@
-"""Questions to a recording once its verdicts are known."""
+"""Analysis of a recording after its verdicts are known: near misses, late responses, values."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ if TYPE_CHECKING:
     from rvmon.verdicts.report import Report
 
 MOST_HELD = 65_536
-"""The most rows kept in memory; of a longer recording failures are noted as it is judged."""
+"""The most rows kept in memory; for longer recordings, failures are noted while judging."""
 
-_AT_ONCE = 16_384  # rows of a longer recording of which failures are noted together
+_AT_ONCE = 16_384  # rows of a longer recording that are noted together
 
 
 class Remembered:
-    """The pieces of a recording as they are judged, if they are few; else notes on failures."""
+    """The judged pieces of a short recording; for a long one, notes on its failures."""
 
     def __init__(self, spec: Spec, recording: FileRecording, only: Sequence[str] | None) -> None:
         self._judged = spec, recording, only
@@ -43,7 +43,7 @@ class Remembered:
         self._notes: FailureNotes | None = None
 
     def take(self, piece: Batch | Sample, core: native.Monitor) -> None:
-        """Take a piece that was judged, by a run that goes on."""
+        """Take a piece that `core` has judged; its run continues."""
         rows = 1 if isinstance(piece, Sample) else len(piece.times)
         if not rows:
             return
@@ -58,13 +58,13 @@ class Remembered:
             self._pieces, self._rows = [], 0
 
     def finish(self, end: int) -> FailureNotes | None:
-        """The notes on a recording that ends at an instant (ticks); `None`: its rows are few."""
+        """The notes on a recording that ends at `end` (ticks); `None` for a short recording."""
         if self._notes is not None:
             self._notes.finish(self._pieces, end)
         return self._notes
 
     def until(self, end: int) -> list[Batch | Sample] | None:
-        """The pieces up to an instant; `None`: there were more than are kept."""
+        """The pieces up to `end` (ticks); `None` if they were not kept."""
         return None if self._notes is not None else list(pieces_up_to(self._pieces, end))
 
 
@@ -77,11 +77,11 @@ def post_analysis(
     goals: bool,
     explains: bool = True,
 ) -> dict[str, Any]:
-    """Additions to a report: the cover goals, and on request what only the whole recording shows.
+    """Fields to add to a report: the cover goals and, with `explains`, explanations.
 
-    That is what the triggers lacked that never came true, and what came after its deadline.
-
-    Streams cannot be read again.
+    Explanations are the near misses of triggers that were never true, the responses that came after
+    their deadline, and the values of signals at failures. A stream cannot be read again, so it gets
+    none of these fields.
     """
     trace, names, end = recording.path, recording.names, report.end
     if end is None or not recording.can_be_read_again:
@@ -127,11 +127,11 @@ def post_analysis(
 
 
 class _Values:
-    """The values of the signals of the first failures."""
+    """The values of the blamed signals at the first failures."""
 
     def __init__(self, spec: Spec, failures: Sequence[Attempt], notes: FailureNotes | None) -> None:
-        self.names: set[str] = set()  # the signals that are to be looked up
-        self.until = 0  # up to this instant, ticks
+        self.names: set[str] = set()  # the signals to look up in the recording
+        self.until = 0  # the last instant of interest, ticks
         self._spec = spec
         self._reads: list[tuple[Attempt, Set[str]]] = []
         if not failures:
@@ -151,7 +151,7 @@ class _Values:
                 self.names |= unknown
 
     def noted(self, pieces: Iterable[Batch | Sample]) -> Iterator[Batch | Sample]:
-        """The pieces, unchanged; nothing is kept of one that was passed."""
+        """Pass the pieces through unchanged, and note the values; no piece is kept."""
         if not self.names:
             yield from pieces
             return
@@ -163,7 +163,7 @@ class _Values:
         self._known |= self._at.known
 
     def of_attempts(self) -> Iterator[tuple[str, int, Mapping[str, str]]]:
-        """By requirement and number of the attempt, what they were at its decision."""
+        """For each failure: requirement, number, and the values at its decision with units."""
         from rvmon.report.tracks import names_of_requirement
 
         signals = self._spec.checked.signals
@@ -178,7 +178,7 @@ class _Values:
 
 
 class _Windows:
-    """The values of the past windows of the first failures."""
+    """The values of the blamed past windows at the first failures."""
 
     def __init__(self, spec: Spec, failures: Sequence[Attempt], origin: int) -> None:
         self._spec = spec
@@ -200,7 +200,10 @@ class _Windows:
         self._values: Mapping[Asked, Scalar] = {}
 
     def noted(self, pieces: Iterable[Batch | Sample], recording: Trace) -> Iterator[Batch | Sample]:
-        """The pieces of a recording, unchanged; of that only names, end and outages are taken."""
+        """Pass the pieces through unchanged, and compute the windows.
+
+        Of `recording`, only names, end and outages are used.
+        """
         if not self._asked:
             yield from pieces
             return
@@ -214,7 +217,7 @@ class _Windows:
         self._values = run.values()
 
     def of_attempts(self) -> Iterator[tuple[str, int, Mapping[str, str]]]:
-        """By requirement and number of the attempt, what they were at its decision."""
+        """For each failure: requirement, number, and the values at its decision with units."""
         from rvmon.analysis.window_values import unit_of
 
         for (requirement, number), asked in self._asked.items():
@@ -227,7 +230,7 @@ class _Windows:
 
 
 def _first_failures(report: Report) -> Iterator[Attempt]:
-    """The failures that are shown, if it is known what was to blame."""
+    """The failures that reports show, of those with a known blame."""
     for name, verdict in report.verdicts.items():
         failed = report.of(name, Verdict.FAIL) if verdict is Verdict.FAIL else iter(())
         for attempt in islice(failed, SHOWN_PER_REQUIREMENT):
@@ -238,15 +241,15 @@ def _first_failures(report: Report) -> Iterator[Attempt]:
 def _read_again(
     spec: Spec, judged: FileRecording, asked: set[str], end: int
 ) -> Iterable[Batch | Sample]:
-    """A recording up to an instant, with what is asked for of it."""
-    # Elsewhere it counts that something came, whatever that was.
+    """Read a recording again up to `end` (ticks), at least the names in `asked`."""
+    # In sampled time, and in recordings of messages, each sample is a position, whatever its names.
     narrow = spec.checked.time is not TimeModel.SAMPLED and not judged.is_of_messages
     only = asked if narrow else None
     return Source(opened(spec, judged.path, only=only), end, is_cut=True).pieces()
 
 
 class _Late:
-    """When what the first failures awaited came after all."""
+    """Late responses: the instants at which the first failures got what they had awaited."""
 
     def __init__(self, spec: Spec, report: Report, notes: FailureNotes | None) -> None:
         self._known: Mapping[tuple[str, int], int | None] = {} if notes is None else notes.late
@@ -264,11 +267,14 @@ class _Late:
                 left = [one for one in attempts if (name, one.number) not in self._known]
                 self._failed[name] = attempts
                 self._waits[name] = waits_of(requirement, left)
-        # what is to be looked up
+        # the questions that need the recording again
         self.questions = [one for waits in self._waits.values() for one in waits.values()]
 
     def arrived(self, seen: RecordedTruths | None) -> Mapping[str, Mapping[int, int]]:
-        """By requirement and number of the attempt, when it came; `seen`: of the questions."""
+        """The instants (ticks) by requirement and number of the attempt.
+
+        `seen` has the answers to `questions`.
+        """
         found = {}
         for name, attempts in self._failed.items():
             came = {one.number: self._known.get((name, one.number)) for one in attempts}

@@ -1,4 +1,4 @@
-"""Options of several commands: the names in recordings, what these may lack; reproducers."""
+"""Shared options for reading recordings, naming attempts, and opening reproducers."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ if TYPE_CHECKING:
 
 
 OPTIONAL_VALUES = ("--allow-missing", "--require-triggered")
-"""Options whose value can be left out, and otherwise follows a `=`."""
+"""Options with an optional value, which must be written after `=`."""
 
-OPTIONAL_OF_COVER = ("--bins",)  # the options of `rvmon cover` whose value can be left out
+OPTIONAL_OF_COVER = ("--bins",)  # such options of `rvmon cover`
 
 
 def with_values(words: Sequence[str]) -> list[str]:
-    """The words of a command line, with an empty value for options that may go without one.
+    """The words of a command line, with an empty value added to options that have none.
 
-    Otherwise they would take the next word for it.
+    Otherwise argparse would take the next word as the value.
 
     >>> with_values(["run", "--allow-missing", "a.rv", "--allow-missing=p"])
     ['run', '--allow-missing=', 'a.rv', '--allow-missing=p']
@@ -48,7 +48,7 @@ def with_values(words: Sequence[str]) -> list[str]:
 
 
 def allowed_names(text: str | None) -> bool | tuple[str, ...]:
-    """The value of `--allow-missing`: none, these, or with an empty one all.
+    """The value of `--allow-missing`: `False` if it is absent, `True` if empty, else the names.
 
     >>> allowed_names(None), allowed_names(""), allowed_names("a, b")
     (False, True, ('a', 'b'))
@@ -73,12 +73,12 @@ def mapped_names(texts: Sequence[str]) -> dict[str, str]:
 
 
 def time_words(arguments: argparse.Namespace) -> list[str]:
-    """The words that say on another command line where the stamps are."""
+    """The option `--time`, as words for another command line."""
     return [] if arguments.time is None else ["--time", arguments.time]
 
 
 def reading_words(arguments: argparse.Namespace) -> list[str]:
-    """The words that say the same on another command line."""
+    """The options for reading recordings, as words for another command line."""
     words = time_words(arguments)
     for text in arguments.map:
         words += ["--map", text]
@@ -91,7 +91,7 @@ def reading_words(arguments: argparse.Namespace) -> list[str]:
 
 
 def reading_arguments(arguments: argparse.Namespace) -> SchemaArguments:
-    """The options of the command line, as `Spec.reading` takes them."""
+    """The options for reading recordings, as arguments of `Spec.reading`."""
     nan = None if arguments.nan is None else arguments.nan.replace("-", " ")
     return {
         "time": arguments.time,
@@ -103,25 +103,29 @@ def reading_arguments(arguments: argparse.Namespace) -> SchemaArguments:
 
 
 def reading_spec(spec: Spec, arguments: argparse.Namespace) -> Spec:
-    """The specification for recordings read as the command line says."""
+    """The specification with the options for reading recordings applied."""
     given = reading_arguments(arguments)
     return spec if all(one in (None, {}) for one in given.values()) else spec.reading(**given)
 
 
 def refuse_empty(spec: Spec) -> None:
-    """Refuse a specification by which everything is fine, such as one that was cut off."""
+    """Refuse a specification with nothing to check, such as a truncated file.
+
+    Raises:
+        RvmonError: it has no requirement, cover goal or coverpoint.
+    """
     checked = spec.checked
     if not (spec.requirements or checked.covers or checked.coverpoints):
         raise RvmonError(f"{checked.name} has no requirement: there is nothing to check")
 
 
 def opened(spec: Spec, trace: str, *, only: Collection[str] | None = None) -> FileRecording:
-    """The recording at a path, as a specification reads it, with all names or only some."""
+    """The recording at a path, as a specification reads it; `only`: the names to read."""
     from rvmon.recordings.recording import FileRecording
 
     schema = spec.schema
     if only is not None:
-        from dataclasses import replace  # which help has no need of
+        from dataclasses import replace  # imported late: help does not need it
 
         schema = replace(
             schema,
@@ -135,11 +139,19 @@ ATTEMPT_HELP = (
     "an attempt such as R1#3, or R1?2 if its trigger was not known for certain; R1 alone names "
     "its first failed attempt, else its first open one, else its first"
 )
-"""The help of options that take an attempt."""
+"""The help text of arguments that name an attempt."""
 
 
 def named_attempt(text: str, spec: Spec) -> tuple[str, str | None]:
-    """The requirement that is meant, and the name of the attempt if one is."""
+    """Parse the name of an attempt or a requirement.
+
+    Returns:
+        The requirement's id, and the name of the attempt, `None` if only a requirement is named.
+
+    Raises:
+        RvmonError: the text has another form.
+        UnknownNameError: there is no such requirement.
+    """
     match = re.fullmatch(r"(?P<name>[^#?]+)((?P<mark>[#?])(?P<number>\d{1,9}))?", text)
     if match is None:
         raise RvmonError(
@@ -154,7 +166,12 @@ def named_attempt(text: str, spec: Spec) -> tuple[str, str | None]:
 
 
 def chosen_attempt(report: Report, name: str, exact: str | None) -> Attempt:
-    """The attempt that is meant: without a name the first failed, else open, else any."""
+    """The attempt named `exact`; if that is `None`, the first failed, else open, else any.
+
+    Raises:
+        RvmonError: the requirement has no attempt.
+        UnknownNameError: there is no attempt of that name.
+    """
     from rvmon.report.wording import without_attempts
 
     attempts = sorted(report.attempts, key=lambda attempt: (attempt.in_doubt, attempt.number))
@@ -175,10 +192,10 @@ ENDING = ".rvcase"  # the suffix of reproducers
 
 
 def relax(parser: argparse.ArgumentParser, words: Sequence[str]) -> None:
-    """Let all but the first argument be left out if a reproducer is named, which brings them along.
+    """Make all positional arguments but the first optional if `words` name a reproducer.
 
-    Without one they stay as they are: argparse would take what may be left out for left out where
-    an option stands before it.
+    Otherwise they stay required, because argparse would treat an optional argument that follows an
+    option as missing.
     """
     if any(word.endswith(ENDING) for word in words):
         for action in parser._get_positional_actions()[1:]:
@@ -187,7 +204,14 @@ def relax(parser: argparse.ArgumentParser, words: Sequence[str]) -> None:
 
 @contextmanager
 def unpacked(arguments: argparse.Namespace) -> Iterator[Case | None]:
-    """The reproducer that is named as the specification; the arguments then say what it says."""
+    """Open the reproducer named as the specification, and set the arguments from it.
+
+    Yields:
+        The reproducer; `None` if the specification is a `.rv` file.
+
+    Raises:
+        RvmonError: the reproducer cannot be read, or options for reading are given as well.
+    """
     if not arguments.spec.endswith(ENDING):
         yield None
         return

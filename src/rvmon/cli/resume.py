@@ -1,4 +1,4 @@
-"""The journal of a run that was interrupted, so that the next goes on from there."""
+"""The journal of `rvmon run`, from which `--resume` continues an interrupted run."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ from rvmon.verdicts.report import Report
 
 
 def path_of(out: str) -> Path:
-    """The file that keeps verdicts until all recordings are judged, next to the output file."""
+    """The journal of a run, next to its output file; it exists until all recordings are judged."""
     return Path(f"{out}.unfinished")
 
 
 class _Entry(msgspec.Struct, frozen=True):
-    """One recording that was judged, with what distinguished its file from others."""
+    """One judged recording, with the stamp of its file."""
 
     trace: str
-    stamp: tuple[int, int]
+    stamp: tuple[int, int]  # size and time, as from `_stamp`
     report: str
     missing: tuple[str, ...]
     hits: dict[str, dict[str, Hit]]
@@ -38,15 +38,15 @@ class _Entry(msgspec.Struct, frozen=True):
 
 
 class Unfinished(journal.Journal, frozen=True):
-    """A run that goes on."""
+    """A run that is not finished, with its journal."""
 
-    # size and time of the files of recordings when the run began, by path
+    # size and time of each recording's files when the run started, by path
     stamps: dict[str, tuple[int, int] | None] = field(default_factory=dict)
-    # the recordings that were judged before, by path
+    # the recordings judged by an earlier run, by path
     known: dict[str, Judged] = field(default_factory=dict)
 
     def judged(self, traces: Sequence[str], fresh: Iterable[Judged]) -> Iterator[Judged]:
-        """The recordings in their order, of which those that are fresh are kept."""
+        """All results in the order of `traces`; those from `fresh` are written to the journal."""
         new = iter(fresh)
         for trace in traces:
             one = self.known.get(trace)
@@ -56,7 +56,7 @@ class Unfinished(journal.Journal, frozen=True):
             yield one
 
     def _add(self, trace: str, judged: Judged) -> None:
-        """Write down what was judged, unless it is to be tried again."""
+        """Append a result to the journal, unless it has an error and should be tried again."""
         stamp = self.stamps[trace]
         if judged.report is None or stamp is None:
             return
@@ -76,15 +76,26 @@ def unfinished(
     resume: bool,
     shards: Sequence[Path] = (),
 ) -> Unfinished:
-    """A run whose verdicts go to a file.
+    """Start the journal of a run that writes its verdicts to a file, or continue an earlier one.
 
-    To `resume` goes on from where an earlier run was ended, if there is one: what judges, how
-    (`reading`: words of the command line, files), and by which program has to be the same, and so
-    has each recording. Recordings of shards may be elsewhere.
+    Results of an earlier run are used only if specification, options, `reading` and rvmon are the
+    same, and the recording has not changed.
+
+    Args:
+        out: path of the output file.
+        traces: paths of the recordings.
+        spec: the specification.
+        options: how to judge.
+        reading: words of the command line, and texts of files, that affect how recordings are read.
+        resume: whether to continue an interrupted run if there is one.
+        shards: journals of shards to join; their recordings need not be on this machine.
+
+    Raises:
+        RvmonError: a journal belongs to another run, or a file cannot be read or written.
     """
     path = path_of(out)
-    # A checksum of all that verdicts depend on but the recordings; the binding's file may be
-    # another one since.
+    # A checksum of all that verdicts depend on, except the recordings. It includes the binding
+    # itself, as its file may have changed.
     words = [*reading, pickle.dumps(spec.schema.binding).hex()]
     heading = journal.checksum(to_plain(spec.checked), words, asdict(options)).encode()
     stamps = {trace: _stamp(trace) for trace in traces}
@@ -118,8 +129,8 @@ def _judged_before(
 ) -> dict[str, Judged]:
     """The results of an earlier run, without recordings whose file has changed since.
 
-    `is_moved`: the files may have been those of another machine: a copy has the size of what it is
-    copied from, and a time of its own; it may be missing.
+    `is_moved`: the recordings may have been on another machine. Then only the size has to agree, as
+    a copy has another time, and the file may be missing here.
     """
 
     def is_same(entry: _Entry) -> bool:
@@ -139,12 +150,12 @@ def _judged(entry: _Entry) -> Judged:
 
 
 def _stamp(trace: str) -> tuple[int, int] | None:
-    """Size and time of the files of a recording; `None` if there are none."""
+    """Total size and latest time of a recording's files; `None` if they cannot be read."""
     try:
         files = list(os.scandir(trace)) if form_of_folder(trace) else [Path(trace)]
         statuses = [file.stat() for file in [*files, *map(Path, frame_databases(trace))]]
     except (OSError, ValueError):
         return None
-    # A file may be given any time of change; that of its place on the disk is the system's.
+    # A program can set the mtime to any value, but not the ctime.
     changed = max(max(one.st_mtime_ns, one.st_ctime_ns) for one in statuses)
     return sum(one.st_size for one in statuses), changed

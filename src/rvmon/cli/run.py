@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 def run_run(arguments: argparse.Namespace) -> int:
-    """Judge, show, and return the exit code."""
+    """Evaluate recordings, print and write the results, and return the exit code."""
     given = arguments.spec
     with unpacked(arguments) as case:
         if case is not None:
@@ -48,7 +48,7 @@ def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
     _show_warnings(spec)
     refuse_empty(spec)
     traces = list(found_recordings(arguments.traces))
-    if arguments.join:  # a folder goes by its own name, and not by those of all that is in it
+    if arguments.join:  # a folder is named by itself, not by all the files in it
         given = arguments.traces
         traces = [JOINT.join(given if len(given) > 1 else [*given, ""])]
     if arguments.shard is not None:
@@ -91,7 +91,7 @@ def _judged(
     options: evaluation.Options,
     case: Case | None,
 ) -> list[evaluation.Judged]:
-    """Judge the recordings, but for those that a run which was ended has judged."""
+    """Judge the recordings, except those that an interrupted run has judged, and write `--out`."""
     judge = partial(
         evaluation.judge_all,
         jobs=arguments.dask or arguments.jobs,
@@ -100,7 +100,7 @@ def _judged(
     shards = _shards(arguments)
     begun = None
     if arguments.out is None or (len(traces) == 1 and not (arguments.shard or shards)):
-        recordings = list(judge(spec, traces, options))  # there is nothing to go on with
+        recordings = list(judge(spec, traces, options))  # no journal: nothing to resume
         if case is not None:
             recordings = [evaluation.as_known(judged, case) for judged in recordings]
     else:
@@ -132,7 +132,7 @@ def _judged(
 
 
 def _share(arguments: argparse.Namespace, traces: Sequence[str]) -> list[str]:
-    """The recordings of a shard, whose verdicts go to a file of its own."""
+    """The recordings of this shard; `--out` is changed to the file of the shard."""
     if arguments.out is None:
         raise RvmonError("--shard leaves its verdicts beside those of all: name the file by --out")
     if arguments.evidence is not None:
@@ -145,7 +145,7 @@ def _share(arguments: argparse.Namespace, traces: Sequence[str]) -> list[str]:
 
 
 def _shards(arguments: argparse.Namespace) -> list[Path]:
-    """The files that keep what shards have judged, where they are to be joined."""
+    """The journals of the shards to join; none unless `--resume` is given without `--shard`."""
     if not arguments.resume or arguments.shard is not None:
         return []
     from rvmon.cli.resume import path_of
@@ -154,7 +154,7 @@ def _shards(arguments: argparse.Namespace) -> list[Path]:
 
 
 def _refuse_places(arguments: argparse.Namespace, traces: Sequence[str], spec: Spec) -> None:
-    """Say before anything is judged that a result has no place to go to."""
+    """Refuse, before anything is judged, outputs that cannot be written."""
     for file in (arguments.junit, arguments.evidence):
         if file:
             refuse_no_file(file)
@@ -180,7 +180,7 @@ def _refuse_places(arguments: argparse.Namespace, traces: Sequence[str], spec: S
     if arguments.coverage is not None:
         from rvmon.coverage.database import Database
 
-        # Opened first, so that a file that cannot be written is refused before the work.
+        # Opened now, so that a file that cannot be written is refused before the work.
         Database.open(arguments.coverage).close()
     if arguments.report and Path(arguments.report).is_file():
         raise RvmonError(f"cannot write to {arguments.report}: it is a file: name a folder")
@@ -231,7 +231,7 @@ def _show_known(known: KnownFailures, reports: Sequence[Report]) -> None:
 
 
 def _show_doubts(judged: Sequence[evaluation.Judged]) -> None:
-    """Warn of what may not be what it seems, as the text for people does."""
+    """Warn of doubtful input, as the text output does."""
     for result in judged:
         for health in () if result.report is None else result.report.health:
             if health.is_doubt:
@@ -247,7 +247,7 @@ def _json(judged: evaluation.Judged, spec: Spec) -> str:
 
 
 def _before_lines(attempts: Sequence[Attempt]) -> Iterator[str]:
-    """The results before the break of a broken recording, a line per requirement."""
+    """The attempts decided before a recording broke off, a line per requirement."""
     by_requirement: dict[str, list[Attempt]] = {}
     for attempt in attempts:
         by_requirement.setdefault(attempt.requirement, []).append(attempt)

@@ -37,7 +37,7 @@ def write_results(path: str, spec: Spec, judged: Sequence[Judged]) -> None:
 
 
 def rows_of(judged: Iterable[Judged]) -> Iterator[VerdictRow]:
-    """The verdicts on recordings as rows."""
+    """The verdicts on recordings as table rows."""
     for result in judged:
         if result.report is not None:
             yield from result.report.rows()
@@ -52,7 +52,10 @@ def write_files(
     known: KnownFailures,
     reproducer: str,
 ) -> None:
-    """Write what else was asked for: coverage, JUnit, MCAP, pages."""
+    """Write the files requested by `--coverage`, `--junit`, `--mcap` and `--report`.
+
+    `reproducer` is the path of the reproducer that was judged; "" if there is none.
+    """
     reports = [result.report for result in judged if result.report is not None]
     if arguments.coverage is not None:
         _record_coverage(Path(arguments.coverage), spec, judged, known)
@@ -63,7 +66,7 @@ def write_files(
         write_file(arguments.junit, junit_xml(reports, spec.checked, broken, known))
 
     def read(trace: str) -> Sequence[Sample]:
-        # What came over standard input is gone: its page has the verdicts, not the signals.
+        # Standard input cannot be read again: its page shows the verdicts without the signals.
         place = arguments.traces[0] if reproducer else trace
         if not can_be_read_again(place):
             return []

@@ -1,4 +1,4 @@
-"""The arguments of the commands on specifications and models, apart from their work."""
+"""The arguments of the commands on specifications and models; separate, so that help is fast."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def run_verify(arguments: argparse.Namespace) -> int:
-    """Decide, show, and return the exit code."""
+    """Decide the queries on a model, print the answers, and return the exit code."""
     _refuse_unused(arguments)
     network = load_network(arguments.model, constants=model_constants_of(arguments.const))
     if network.warnings:
@@ -172,7 +172,7 @@ def _show_suite(network: Network, arguments: argparse.Namespace, budget: Budget)
 
 @contextmanager
 def _shown() -> Iterator[Watch | None]:
-    """A line on a terminal's standard error that says how far a search is."""
+    """Show the progress of a search in a line on standard error, if that is a terminal."""
     with busy("starting") as told:
         yield told and (
             lambda progress: told(
@@ -185,7 +185,7 @@ def _shown() -> Iterator[Watch | None]:
 def check_spec(
     network: Network, arguments: argparse.Namespace, budget: Budget, watch: Watch | None
 ) -> int:
-    """Decide, show, and return the exit code."""
+    """Check the requirements of `--spec` on all runs of a model; returns the exit code."""
     from rvmon.models.requirement_check import observe
     from rvmon.session import load
 
@@ -239,7 +239,7 @@ def _print_observation(observation: Observation, spec: Spec) -> None:
 
 
 def _timeline(observation: Observation, shown: Run, spec: Spec) -> list[str]:
-    """The timeline of a requirement along a run, judged by the monitor of recordings."""
+    """The timeline of a requirement along a run, judged as a recording."""
     from rvmon.analysis.example import Example
     from rvmon.models.conform import recording_of
     from rvmon.models.requirement_check import signals_of
@@ -272,7 +272,7 @@ def _timeline(observation: Observation, shown: Run, spec: Spec) -> list[str]:
     for record in samples:
         monitor.step_ns(record.t, record.values)
     if shown.steps and shown.steps[-1].action is None:
-        end += 1  # what only time decides is decided a tick after its window
+        end += 1  # what time alone decides is decided one tick after its window
     monitor.advance_ns(end + 1)
     report = monitor.finish_ns(end)
     example = Example(

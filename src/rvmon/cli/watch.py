@@ -1,4 +1,4 @@
-"""`rvmon watch`: evaluate a running robot, line by line."""
+"""`rvmon watch`: monitor a running robot."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ if TYPE_CHECKING:
     from rvmon.adapters.ros1 import Ros1Source
     from rvmon.adapters.ros2 import Ros2Source
 
-_TURN = 0.25  # seconds between two looks at the specification
-_LAST_DOMAIN = 232  # the last domain of DDS that has ports
+_TURN = 0.25  # seconds between two checks whether the specification has changed
+_LAST_DOMAIN = 232  # the last DDS domain that has ports
 
 
 def run_watch(arguments: argparse.Namespace) -> int:
-    """Judge until the stream ends or somebody ends it, and return the exit code."""
-    arguments.age = _age(arguments.spec)  # before it is read: no change is missed
+    """Monitor until the stream ends or the user interrupts, and return the exit code."""
+    arguments.age = _age(arguments.spec)  # before the file is read, so that no change is missed
     spec = _loaded(arguments)
     if arguments.state is not None:
         return _watch_kept(arguments, spec)
@@ -58,7 +58,7 @@ def run_watch(arguments: argparse.Namespace) -> int:
         or shown.has_failed
         or any(verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE) for verdict in verdicts)
     )
-    return int(unseen or not verdicts)  # none: nothing came that could be told to be a robot's
+    return int(unseen or not verdicts)  # no verdicts: no robot has sent anything
 
 
 def _watch_kept(arguments: argparse.Namespace, spec: Spec) -> int:
@@ -80,7 +80,7 @@ def _watch_lines(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Li
         clock = _own_clock()
         is_stamped = began is not None or arguments.time is not None
         if is_stamped and arguments.realtime is None:
-            # What cannot be read above the first stamp came before it.
+            # Unreadable lines above the first stamp count as earlier than it.
             clock = followed = SimulatedClock(0 if began is None else began - 1)
         live = _live(arguments, spec, clock, shown.judged)
         objects = JsonObjects(live, clock=followed)
@@ -90,7 +90,7 @@ def _watch_lines(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Li
         def feed() -> None:
             try:
                 feed_lines(objects, every, arguments.robot)
-            except Exception as error:  # noqa: BLE001 - of whatever: what comes is heard no more
+            except Exception as error:  # noqa: BLE001 - any error ends the input
                 why = getattr(error, "strerror", None) or f"{type(error).__name__} {error}".strip()
                 faults.append(f"{arguments.source}: {why}")
                 live.lose(why=faults[0])
@@ -164,7 +164,7 @@ def _watch_topics(arguments: argparse.Namespace, spec: Spec, shown: Output) -> L
 
 
 def _domain_of(source: str) -> int | None:
-    """The domain of DDS that a source names; `None` if it is of another kind."""
+    """The DDS domain that a source names; `None` if it is no DDS source."""
     if not source.startswith("dds:"):
         return None
     domain = source.partition(":")[2] or os.environ.get("ROS_DOMAIN_ID", "0")
@@ -195,7 +195,7 @@ each with the alternative."""
 def _live_here(
     arguments: argparse.Namespace, spec: Spec, shown: Output, clock: Clock
 ) -> tuple[Live, Callable[[Callable[[Judgement], object]], object]]:
-    """Monitors whose samples are stamped here, and how somebody else hears their verdicts."""
+    """A running monitor, and the function that registers a further listener for verdicts."""
     hearing: list[Callable[[Judgement], object]] = [shown.judged]
 
     def judged(judgement: Judgement) -> None:
@@ -235,7 +235,7 @@ def _follow(
     shown: Output,
     feeding: threading.Thread | None = None,
 ) -> None:
-    """Show how it stands, and take changes of the specification up, while anything comes."""
+    """Update the output and reload a changed specification, until the input ends or Ctrl-C."""
     try:
         while feeding is None or feeding.is_alive():
             if feeding is None:
@@ -257,7 +257,11 @@ def _follow(
 
 
 def _replace(arguments: argparse.Namespace, live: Live) -> None:
-    """Have what watches go on with the specification as it is now."""
+    """Continue with the specification as the file is now.
+
+    Raises:
+        RvmonError: it has errors, or needs topics that are not subscribed to.
+    """
     spec = _loaded(arguments)
     if arguments.source.startswith(_TOPICS):
         known = live.spec.schema
@@ -274,7 +278,7 @@ def _replace(arguments: argparse.Namespace, live: Live) -> None:
 
 
 def _is_recording(path: str) -> bool:
-    """Whether a path is a recording that is no text of JSON lines."""
+    """Whether a path is a recording in another format than JSON lines."""
     if form_of_folder(path):
         return True
     ending, packed = endings_of(path)
@@ -285,7 +289,10 @@ def _is_recording(path: str) -> bool:
 
 
 def _age(path: str) -> tuple[int, int] | None:
-    """Time and size of a file, which change when it is written; `None` while there is none."""
+    """Modification time and inode of a file, one of which changes when it is written.
+
+    `None` while the file does not exist.
+    """
     try:
         status = os.stat(path)
     except OSError:
@@ -294,7 +301,11 @@ def _age(path: str) -> tuple[int, int] | None:
 
 
 def _opened(arguments: argparse.Namespace) -> FileIO:
-    """The lines to evaluate; a recording of another format is refused."""
+    """Open the stream of JSON lines.
+
+    Raises:
+        RvmonError: it cannot be opened, or is a recording in another format.
+    """
     source: str = arguments.source
     try:
         if not _is_recording(source):

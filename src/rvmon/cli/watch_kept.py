@@ -1,4 +1,4 @@
-"""`rvmon watch --state`: a run that is kept in a file, from which the same command goes on."""
+"""`rvmon watch --state`: a run kept in a file, which the same command continues."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ from rvmon.verdicts import Verdict
 from rvmon.verdicts.attempt import Attempt, Decision
 
 _LOSSES = (HealthKind.DROPPED, HealthKind.LATE)
-_KEEP = 1000  # the records of each verdict kept per requirement, as in a watch without a state
+_KEEP = 1000  # the most records per requirement and verdict, as without `--state`
 
 
 def refuse_others(arguments: argparse.Namespace) -> None:
-    """Refuse options that a watch with a state does without."""
+    """Refuse options that do not go with `--state`."""
     refuse_over([arguments.state], [arguments.spec, arguments.source, arguments.binding])
     if "://" in arguments.source or arguments.source.startswith(("ros1:", "dds:")):
         raise RvmonError("--state: a run that is kept is of lines: a pipe or a file")
@@ -52,9 +52,10 @@ def watch_kept(
     *,
     is_file: bool,
 ) -> int:
-    """Judge lines until there are no more, and return the exit code.
+    """Judge lines until they end, and return the exit code.
 
-    `is_file`: lines begin anew with each process: those that were taken are passed over.
+    `is_file`: the lines are those of a file, which a new process reads from its start; lines that
+    were judged before are skipped.
     """
     is_untold = False
 
@@ -92,7 +93,8 @@ def watch_kept(
                 lines = _behind_gap(monitor, lines)
             _feed(monitor, spec, lines)
         finally:
-            if not is_untold:  # else the same command is to say it, from what the file has
+            # If a verdict could not be printed, the next process reports it from the old file.
+            if not is_untold:
                 monitor.save()
     except BrokenPipeError:
         raise
@@ -103,8 +105,8 @@ def watch_kept(
         warn("ended; the same command continues the run")
     if not monitor.taken:
         raise no_line(arguments.source)
-    # Also what earlier processes of the run lost; what it goes on to is not known yet.
-    # A copy is finished, so that the run can be continued.
+    # The losses of all processes of the run so far. A copy of the monitor is finished, so that the
+    # run itself can continue.
     at_end = spec.restore(monitor.monitor.snapshot()).finish_ns()
     lost = [health for health in at_end.health if health.kind in _LOSSES and health.requirements]
     for names, fact in health_facts(lost, at_end.origin):
@@ -116,22 +118,25 @@ def watch_kept(
         if attempt.verdict is Verdict.FAIL and attempt.decision is Decision.PREFIX
     }
     if untold := sorted(failed - told):
-        # Another line may have the same stamp.
+        # Not reported yet, as another line may have the same stamp.
         warn(f"{', '.join(untold)}: fails by the last line, reported when a later stamp comes")
     return int(bool(lost or told or failed))
 
 
 def no_line(source: str) -> RvmonError:
-    """Nothing came: that is no success."""
+    """The error that no line came, which is no success."""
     return RvmonError(f"error: {source}: there is no line: nothing was evaluated")
 
 
 def _behind_taken(
     monitor: DurableMonitor, lines: Iterable[bytes], arguments: argparse.Namespace
 ) -> Iterator[bytes]:
-    """The lines of a file, blank in place of those that were taken.
+    """The lines of a file, with blanks instead of those that were judged before.
 
-    Those before the last one are marked, which may be one that is being written.
+    The mark covers all lines but the last, which may still be incomplete.
+
+    Raises:
+        RvmonError: the file does not start with the lines that were judged.
     """
     taken, (count, known) = monitor.taken, monitor.mark
     other = RvmonError(
@@ -152,7 +157,7 @@ def _behind_taken(
 
 
 def _behind_gap(monitor: DurableMonitor, lines: Iterable[bytes]) -> Iterator[bytes]:
-    """The lines of a pipe; before the first one, what came to no process is reported as lost."""
+    """The lines of a pipe; before the first, reports a loss, as no process read meanwhile."""
     has_come = False
     for line in lines:
         if line.strip() and not has_come:

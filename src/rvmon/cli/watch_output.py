@@ -1,4 +1,4 @@
-"""The output of `rvmon watch`: a view, lines for people, or JSON lines."""
+"""The output of `rvmon watch`: a live table, lines for people, or JSON lines."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ from rvmon.texts import counted, shown
 from rvmon.trace.time import NEVER, TICKS_PER_SECOND, format_stamped
 from rvmon.verdicts import Verdict, fold
 
-_TOLD = 5
+_TOLD = 5  # messages of a kind that are all printed; later ones only at 10, 100, …
 _SHOWN_FAILURES = 5
 _SHOWN_ROBOTS = 8
-_MOST_OPEN = 100
+_MOST_OPEN = 100  # the most open attempts per robot that are queried
 _FRAME = 5  # lines of a robot's table in addition to its rows
-_FEW = 4  # rows that a robot has at least, before another robot is shown
+_FEW = 4  # rows of a robot that must fit before a further robot is shown
 
 
 class Output(logging.Handler):
-    """Lines for people, one for each verdict; what is wrong with the input goes to standard error.
+    """One line per verdict for people; problems of the input go to standard error.
 
     Args:
-        failures_only: whether what passed is left out.
+        failures_only: whether passed attempts are left out.
     """
 
     def __init__(self, *, failures_only: bool) -> None:
@@ -43,14 +43,15 @@ class Output(logging.Handler):
         self._failures_only = failures_only
         self._log = logging.getLogger("rvmon.live.input")
         self._counts = Counter[str]()
-        # the reason why verdicts cannot be written any more, such as a reader that has left
+        # the error that prevents further output, such as a closed pipe
         self.broken: OSError | None = None
-        self.has_failed = False  # by any specification: their verdicts go when a new one comes
+        # kept here because verdicts are discarded when the specification changes
+        self.has_failed = False
 
     def __enter__(self) -> Output:
         self._log.addHandler(self)
-        # Without this, the root's handlers would print each line again; and the parent, the logger
-        # of verdicts, has no handler, so Python would print warnings itself.
+        # Otherwise handlers of the root logger would print each line again. The logger of verdicts,
+        # `rvmon.live`, needs some handler, or Python would print its warnings.
         self._log.propagate = False
         logging.getLogger("rvmon.live").addHandler(logging.NullHandler())
         return self
@@ -59,7 +60,7 @@ class Output(logging.Handler):
         self._log.removeHandler(self)
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Say what is wrong with the input: of many of a kind the first, and each tenfold."""
+        """Print a problem of the input: the first few of a kind, then the 10th, 100th and so on."""
         self._counts[record.msg] += 1
         count = self._counts[record.msg]
         if count <= _TOLD:
@@ -68,28 +69,28 @@ class Output(logging.Handler):
             self.note(f"{record.getMessage()}  (the {count:,}th of this kind; most are left out)")
 
     def judged(self, judgement: Judgement) -> None:
-        """Say a verdict, if it is asked for."""
+        """Handle a verdict: print it unless it is filtered out."""
         self.has_failed |= judgement.attempt.verdict is Verdict.FAIL
         if judgement.attempt.verdict is not Verdict.FAIL and self._failures_only:
             return
         try:
             self.say(judgement)
-        except OSError as error:  # in the thread of the monitors: others have to end
+        except OSError as error:  # this is the monitors' thread; the main thread raises it
             self.broken = error
 
     def say(self, judgement: Judgement) -> None:
-        """Say a verdict."""
+        """Print a verdict."""
         say(line_of(judgement), flush=True)
 
     def note(self, text: str) -> None:
-        """Say something that is no verdict."""
+        """Print a message that is no verdict."""
         warn(text)
 
     def show(self, driver: Driver) -> None:
-        """Show how it stands; called a few times in a second."""
+        """Update a display of the status; called a few times per second."""
 
     def ended(self, driver: Driver) -> None:
-        """Say what came of it."""
+        """Print the final status."""
         print_status(driver, Printer())
 
 
@@ -97,12 +98,12 @@ class JsonOutput(Output):
     """A JSON line for each verdict, and at the end one for each robot."""
 
     def say(self, judgement: Judgement) -> None:
-        """Say a verdict."""
+        """Print a verdict."""
         say_json(judgement.to_json())
         sys.stdout.flush()
 
     def ended(self, driver: Driver) -> None:
-        """Say what came of it."""
+        """Print the final status."""
         for name, status in driver.status().items():
             figures = {
                 "robot": name,
@@ -115,7 +116,7 @@ class JsonOutput(Output):
 
 
 class View(Output):
-    """A table that stays in its place: verdicts, what is required until when, what failed last."""
+    """A table updated in place: verdicts, next deadlines, and the latest failures."""
 
     def __init__(self, *, failures_only: bool) -> None:
         super().__init__(failures_only=failures_only)
@@ -133,23 +134,23 @@ class View(Output):
         super().__exit__(*ended)
 
     def judged(self, judgement: Judgement) -> None:
-        """Remember what failed."""
+        """Handle a verdict: remember failures."""
         if judgement.attempt.verdict is Verdict.FAIL:
             self.has_failed = True
             self._failures.append(line_of(judgement))
 
     def note(self, text: str) -> None:
-        """Say something above the table."""
+        """Print a message above the table."""
         self._console.print(shown(text))
 
     def show(self, driver: Driver) -> None:
-        """Show how it stands, no longer than the terminal is high."""
+        """Update the table, which is at most as high as the terminal."""
         lines = sum(-(-len(failure) // self._console.width) for failure in self._failures)
         height = max(1, self._console.height - lines - 1)
         self._screen.update(Text.from_ansi(self._drawn(driver, height)), refresh=True)
 
     def ended(self, driver: Driver) -> None:
-        """Show how it stands at the end."""
+        """Print the final table."""
         sys.stdout.write(self._drawn(driver))
 
     def _drawn(self, driver: Driver, height: int | None = None) -> str:
@@ -162,14 +163,14 @@ class View(Output):
 
 
 def output_named(name: str | None, *, failures_only: bool) -> Output:
-    """The output of a name; by default a view on a terminal, and lines elsewhere."""
+    """The output for a value of `--format`; default: a live table on a terminal, else lines."""
     kinds = {"view": View, "text": Output, "json": JsonOutput}
     chosen = name or ("view" if sys.stdout.isatty() else "text")
     return kinds[chosen](failures_only=failures_only)
 
 
 def line_of(judgement: Judgement) -> str:
-    """A verdict in a line."""
+    """A verdict as one line of text."""
     attempt = judgement.attempt
     robot = f"{judgement.robot}  " if judgement.robot else ""
     decided = attempt.triggered if attempt.decided is None else attempt.decided
@@ -180,9 +181,9 @@ def line_of(judgement: Judgement) -> str:
 
 
 def print_status(driver: Driver, printer: Printer, height: int | None = None) -> None:
-    """Print robots and their requirements, those first that need a look.
+    """Print robots and their requirements, the most urgent first.
 
-    `height`: the number of lines; requirements that do not fit are counted. `None`: all.
+    `height`: the most lines; requirements that do not fit are only counted. `None`: no limit.
     """
     statuses = driver.status(most_open=_MOST_OPEN)
     robots = sorted(statuses.values(), key=lambda status: _need(fold(status.verdicts.values())))
@@ -199,7 +200,7 @@ def print_status(driver: Driver, printer: Printer, height: int | None = None) ->
 
 
 def _need(verdict: Verdict) -> int:
-    """Failures before what is inconclusive before the rest."""
+    """The sort key of a verdict: failed first, then inconclusive, then the rest."""
     return {Verdict.FAIL: 0, Verdict.INCONCLUSIVE: 1}.get(verdict, 2)
 
 

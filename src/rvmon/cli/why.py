@@ -1,4 +1,4 @@
-"""`rvmon why`: one attempt of a recording, taken apart."""
+"""`rvmon why`: explain one attempt of a recording."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from rvmon.verdicts.report import Report
 
 
 def run_why(arguments: argparse.Namespace) -> int:
-    """Judge the recording, take the attempt apart, show it, and return the exit code."""
+    """Judge the recording, print the explanation of the attempt, and return the exit code."""
     with reading.unpacked(arguments) as case:
         if case is not None:
             if arguments.attempt is not None:
@@ -109,7 +109,7 @@ def _window_values(
     report: Report,
     names: frozenset[str] | None,
 ) -> dict[str, Sequence[str]]:
-    """The values of the failed windows, at the instants of the signals' values."""
+    """The values of the blamed windows, at the trigger and at the decision."""
     if attempt.blame is None or attempt.decided is None:
         return {}
     windows = windows_blamed(checked, checked.requirements[attempt.requirement], attempt.blame)

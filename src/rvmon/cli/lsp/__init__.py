@@ -11,13 +11,13 @@ from rvmon.errors import needed
 
 
 def run_lsp(arguments: argparse.Namespace) -> int:  # noqa: ARG001 - it has one way to serve
-    """Serve until the editor ends it, and return the exit code."""
+    """Serve until the editor ends the session, and return the exit code."""
     with needed("the language server", "pygls"):
         from rvmon.cli.lsp.server import Server
-    # At once: while the loop waits for the editor, a handler of Python's may not get to run.
+    # End at once by signals: while the loop waits for the editor, Python's handlers may not run.
     for ending in (signal.SIGINT, signal.SIGTERM):
         signal.signal(ending, signal.SIG_DFL)
-    # Standard output is the protocol's alone: what anything else prints there goes to the log.
+    # Only the protocol may use standard output; all other output goes to standard error, the log.
     with os.fdopen(os.dup(1), "wb") as answers:
         os.dup2(2, 1)
         Server().start_io(sys.stdin.buffer, answers)

@@ -1,4 +1,4 @@
-"""Completion: the words that the grammar and the names of the file allow at a place."""
+"""Completion and hover: the words allowed at a place, and their meaning."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _OWN = re.compile(r"(?<![\w.])(?:let|each)\s+([^\W\d][\w.]*)|\Adefine\s+\w[\w.]*
 
 
 def proposals(names: Names, place: Span) -> tuple[Span, dict[str, str]]:
-    """The word begun at a place, and its completions, each with its kind, by names last read."""
+    """The incomplete word at a place, and its completions, each with its kind."""
     text = place.source.text[: place.start]
     line = _NO_CODE.sub("", text[text.rfind("\n") + 1 :])
     word = _BEGUN.search(text)
@@ -50,7 +50,7 @@ def _found(names: Names, item: str, *, alone: bool) -> Iterator[tuple[str, str]]
         yield from ((label.span.text, "label") for label in type_.labels)
         return
     yield from _units(item)
-    # The item has an error before this place, so it is unknown what may follow.
+    # If the item has an error before this place, anything may follow.
     if not read:
         accepted = {terminal.name for terminal in grammar().terminals}
     if {"NAME", "NUMBER"} <= accepted:
@@ -64,7 +64,7 @@ def _found(names: Names, item: str, *, alone: bool) -> Iterator[tuple[str, str]]
 
 
 def _units(item: str) -> Iterator[tuple[str, str]]:
-    """Units behind a number, of time only where a duration is expected; or in a type."""
+    """Units in a type or after a number; only those of time where a duration is expected."""
     if _BRACKET.search(item):
         yield from ((unit, "unit") for unit in unit_table())
     elif number := _NUMBER.search(item):
@@ -76,7 +76,7 @@ def _units(item: str) -> Iterator[tuple[str, str]]:
 
 
 def _operands(names: Names, item: str, *, formulas: bool) -> Iterator[tuple[str, str]]:
-    """Names that a formula, or else a duration, may have in it."""
+    """Names that a formula or, without `formulas`, a duration may contain."""
     for name, parameters in _OWN.findall(item):
         yield from ((local.strip(), "name") for local in (name or parameters).split(","))
     if item.startswith("cross"):
@@ -93,7 +93,7 @@ def _operands(names: Names, item: str, *, formulas: bool) -> Iterator[tuple[str,
 
 
 def _named(names: Names, item: str) -> Iterator[tuple[str, str]]:
-    """Names where only some may stand; none where a new one is expected."""
+    """Names at places that allow only some; none where a new name is expected."""
     if re.search(r"(?<![\w.])at\s+end\s*:?\s*\Z", item):
         yield from ((policy.value, "keyword") for policy in EndPolicy)
     elif item.startswith("cross") and "=" in item:
@@ -107,7 +107,7 @@ def _coverpoints(names: Names) -> Iterator[tuple[str, str]]:
 
 
 def hover(names: Names, checked: CheckedSpec | None, place: Span) -> tuple[Span, str] | None:
-    """The word at a place and what it means; `None` if that is nothing."""
+    """The word at a place and its meaning in Markdown; `None` if there is none."""
     if use := names.at(place):
         return use[0], _about(names, checked, use[1])
     word = about_word(place)
@@ -115,7 +115,7 @@ def hover(names: Names, checked: CheckedSpec | None, place: Span) -> tuple[Span,
 
 
 def _about(names: Names, checked: CheckedSpec | None, name: Ident) -> str:
-    """A requirement in words; of all else how it is declared: type, unit, role, staleness."""
+    """A requirement in words; for any other name, the text of its declaration."""
     item = names.item_at(name.span)
     requirement = checked.requirements.get(name.text) if checked else None
     if requirement is not None and isinstance(item, RequirementItem) and name is item.name:

@@ -1,4 +1,4 @@
-"""A document compiled as far as it goes, its places, and what editors ask about it."""
+"""An open document: its text with positions, its compilation, and answers for editors."""
 
 from __future__ import annotations
 
@@ -30,11 +30,13 @@ _WIDTHS = {
     lsp.PositionEncodingKind.Utf16: (0x10000,),
     lsp.PositionEncodingKind.Utf32: (),
 }
-"""The characters from which on one takes a unit more."""
+"""By encoding, the code points from which a character takes one code unit more."""
 
 
 class Text:
-    """A text with its lines; pygls would end them at a form feed or U+2028, which no editor does.
+    """A text with its lines.
+
+    It replaces that of pygls, which would also end lines at a form feed or U+2028, unlike editors.
 
     Source: Language Server Protocol 3.17, Text Documents and Position.
     """
@@ -47,11 +49,11 @@ class Text:
 
     @property
     def code(self) -> str:
-        """The text that is compiled: with the language's ends of lines, at the same offsets."""
+        """The text to compile: with line ends of the language, and the same offsets."""
         return self.raw.replace("\r\n", " \n").replace("\r", "\n")
 
     def position(self, offset: int) -> lsp.Position:
-        r"""Where a character is.
+        r"""The position of the character at an offset.
 
         >>> Text("# 😋\nspec a").position(3).character
         4
@@ -61,11 +63,11 @@ class Text:
         return lsp.Position(line, column)
 
     def range(self, start: int, end: int) -> lsp.Range:
-        """The range of some characters."""
+        """The range of the characters from offset `start` to `end`."""
         return lsp.Range(self.position(start), self.position(end))
 
     def offset(self, position: lsp.Position) -> int:
-        """The character at a position, at the end of its line at most."""
+        """The offset of the character at a position; at most the end of its line."""
         if position.line >= len(self._starts):
             return len(self.raw)
         place = self._starts[position.line]
@@ -88,7 +90,7 @@ class Text:
         return 1 + bisect_right(self._widths, ord(char))
 
 
-MOST_FIXES = 5  # the most findings at a place whose proposed fixes are tried
+MOST_FIXES = 5  # the most diagnostics at a place whose fixes are tried
 
 _SEVERITIES = {
     Severity.ERROR: lsp.DiagnosticSeverity.Error,
@@ -108,11 +110,11 @@ _KINDS = {
 }
 _HEAD = re.compile(r"(\w+)\s+(`[^`\n]+`|[^\W\d][\w.]*)")
 
-Key = tuple[str, int]  # a declaration, the same in all documents: its file, and where in that it is
+Key = tuple[str, int]  # identifies a declaration in all documents: its file and offset
 
 
 class Document:
-    """A text that is being written; `read` gives the text of a file that it imports."""
+    """A compiled text, which may have errors; `read` returns the text of an imported file."""
 
     def __init__(self, uri: str, text: Text, read: Callable[[Path], str]) -> None:
         self.uri = uri
@@ -128,7 +130,7 @@ class Document:
         return compilation(source, self._folder, {}, self._read)
 
     def place(self, position: lsp.Position) -> Span:
-        """A position in the text."""
+        """The empty span at a position in the text."""
         offset = self.text.offset(position)
         return Span(self.source, offset, offset)
 
@@ -137,7 +139,7 @@ class Document:
         return {id(self.source): self.text}
 
     def location(self, span: Span) -> lsp.Location:
-        """A place in this text or in one that it imports."""
+        """The location of a span in this text or in an imported one."""
         source = span.source
         if id(source) not in self._texts:
             self._texts[id(source)] = Text(source.text, self.text.encoding)
@@ -146,7 +148,7 @@ class Document:
 
     @cached_property
     def diagnostics(self) -> dict[str, list[lsp.Diagnostic]]:
-        """The findings, by the address of their file."""
+        """The diagnostics by the URI of their file."""
         by_address: dict[str, list[lsp.Diagnostic]] = {self.uri: []}
         for finding in self.compiled.findings:
             spans = finding.spans
@@ -173,7 +175,7 @@ class Document:
         )
 
     def fixes(self, where: lsp.Range) -> Iterator[lsp.CodeAction]:
-        """The fixes that findings in a range propose, if the compiler accepts them."""
+        """The fixes of diagnostics in a range; only those that leave fewer errors or warnings."""
         start, end = self.text.offset(where.start), self.text.offset(where.end)
         proposals = (
             (finding, finding.spans[0].span, proposed(finding.help))
@@ -194,7 +196,7 @@ class Document:
                 )
 
     def symbols(self) -> Iterator[lsp.DocumentSymbol]:
-        """The declarations and requirements of the text; only the name of an unreadable item."""
+        """The declarations and requirements of the text; of an unreadable item only the name."""
         read = {item.span.start: item for item in self.compiled.files[0].items}
         for start, end in split_items(self.source.text):
             head = _HEAD.match(self.source.text, start, end)
@@ -213,7 +215,7 @@ class Document:
                 )
 
     def definitions(self, position: lsp.Position) -> list[lsp.Location]:
-        """The declaration of the name at a position, or the files that are imported there."""
+        """The declaration of the name at a position, or the files imported there."""
         place = self.place(position)
         item = self.names.item_at(place)
         if isinstance(item, ImportItem):
@@ -227,12 +229,12 @@ class Document:
         return [self.location(use[1].span)] if use else []
 
     def key(self, position: lsp.Position) -> Key | None:
-        """The declaration that the name at a position stands for."""
+        """The key of the declaration of the name at a position; `None` if there is none."""
         use = self.names.at(self.place(position))
         return _key(use[1]) if use else None
 
     def uses(self, key: Key) -> Iterator[Span]:
-        """All places of the names that stand for a declaration."""
+        """The spans of all names that refer to a declaration."""
         return (span for span, target in self.names.all() if _key(target) == key)
 
 
@@ -242,7 +244,7 @@ def _badness(compiled: Compilation) -> tuple[int, int]:
 
 
 def _page(code: str) -> lsp.CodeDescription | None:
-    """The page of a code as a file that editors open; `None` if it cannot be kept now."""
+    """The page of a diagnostic code as a file that editors open; `None` if it cannot be written."""
     folder = cache_folder()
     with suppress(OSError):
         return None if folder is None else _kept_page(folder / "codes" / f"{code}.md", code)
@@ -257,7 +259,7 @@ def _kept_page(path: Path, code: str) -> lsp.CodeDescription:
 
 
 def _address(source: Source) -> str:
-    """The address of an imported file; those of libraries have no path as name."""
+    """The URI of an imported file; the name of a shipped library is no absolute path."""
     if os.path.isabs(source.name):
         return str(from_fs_path(os.path.normpath(source.name)))
     return str(from_fs_path(str(resources.files("rvmon.language") / source.name)))

@@ -1,4 +1,4 @@
-"""The uses of names with their declarations; the words of the language."""
+"""Names in a specification with their uses and declarations; the words of the language."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ _LINES = {
 
 @cache
 def meanings() -> Mapping[str, str]:
-    """A line on each word and sign."""
+    """A line of explanation for each word and sign of the language."""
     return {
         **{word: line for words, line in _LINES.items() for word in words},
         **{text: f"`{text}`: {op.entry.doc}" for op in OPERATORS for text in op.spellings},
@@ -96,7 +96,7 @@ def meanings() -> Mapping[str, str]:
 
 @cache
 def _word() -> re.Pattern[str]:
-    """A word or sign of the language, else a name; comments and texts are passed over whole."""
+    """Matches a word or sign of the language, or a name; consumes comments and texts whole."""
     longest = sorted(meanings(), key=len, reverse=True)
     words = "|".join(
         re.escape(one).replace(r"\ ", r"[ \t]+") for one in longest if one[0].isalpha()
@@ -109,7 +109,7 @@ def _word() -> re.Pattern[str]:
 
 
 def about_word(place: Span) -> tuple[Span, str] | None:
-    """The word at a place, and the line on it; of what may be a name the line is empty."""
+    """The word at a place with its explanation, which is empty for what may be a name."""
     text = place.source.text
     first = text.rfind("\n", 0, place.start) + 1
     stop = text.find("\n", place.start)
@@ -120,13 +120,13 @@ def about_word(place: Span) -> tuple[Span, str] | None:
     return None
 
 
-Use = tuple[Span, Ident]  # a place of a name, and where what it stands for is declared
+Use = tuple[Span, Ident]  # the place of a name, and the identifier in its declaration
 
 _GOALS = (RequirementItem, PropertyItem, CoverItem, CoverpointItem, CrossItem)
 
 
 class Names:
-    """The names of a file and of those that it imports."""
+    """The names of a file and of its imports."""
 
     def __init__(self, files: Sequence[ParsedSpec]) -> None:
         # the declarations of names in formulas; payload fields as `event.field`
@@ -134,7 +134,7 @@ class Names:
         # the places of requirements, properties and coverage goals
         self.goals: dict[str, Ident] = {}
         self.types: dict[str, TypeSyntax] = {}  # of signals and of payload fields, as written
-        self.owners: dict[int, Item] = {}  # the item that declares a name, by the `id` of that
+        self.owners: dict[int, Item] = {}  # the declaring item, by the `id` of the identifier
         self._files = files
         for file in files:
             for item in file.items:
@@ -165,7 +165,7 @@ class Names:
         self.owners[id(name)] = item
 
     def item_at(self, place: Span) -> Item | None:
-        """The item that a place is in, or right behind."""
+        """The item that contains a place or ends there."""
         files = (file for file in self._files if file.source is place.source)
         items = (item for file in files for item in file.items)
         return next((i for i in items if i.span.start <= place.start <= i.span.end), None)
@@ -173,7 +173,7 @@ class Names:
     def at(self, place: Span) -> Use | None:
         """The name that a place touches; `pick.id` is two."""
         item = self.item_at(place)
-        if item is None:  # it cannot be read yet: names of the file are known all the same
+        if item is None:  # the item cannot be parsed, but names of the file are known
             span, meaning = about_word(place) or (place, "none")
             known = {**self.goals, **self.declared}.get(span.text.strip("`"))
             return (span, known) if known and not meaning else None
@@ -241,7 +241,7 @@ class Names:
 
 
 def _own(item: Item) -> dict[str, Ident]:
-    """Names that only an item knows: parameters, captured values, the value of `for each`."""
+    """The local names of an item: parameters, captured values, the value of `for each`."""
     match item:
         case DefineItem(parameters=parameters):
             return {name.text: name for name in parameters or ()}
@@ -253,7 +253,7 @@ def _own(item: Item) -> dict[str, Ident]:
 
 
 def _signal(expression: object) -> str:
-    """The signal whose labels an expression takes; empty if that cannot be seen."""
+    """The signal whose labels an expression has as values; empty if unknown."""
     match expression:
         case Name(text=text):
             return text
@@ -264,7 +264,7 @@ def _signal(expression: object) -> str:
 
 
 def _nodes(whole: object) -> Iterator[object]:
-    """All parts of a piece of the syntax tree, in order of the text."""
+    """All nodes of a syntax tree, in the order of the text."""
     waiting = [whole]
     while waiting:
         node = waiting.pop()

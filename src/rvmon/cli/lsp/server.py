@@ -1,4 +1,4 @@
-"""The language server: requests of an editor, answered from its documents as they are."""
+"""The language server: answers the requests of an editor."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ from rvmon.texts import text_of_file
 
 
 class Protocol(LanguageServerProtocol):
-    """Leaves edits to us: see `Text`."""
+    """Protocol without pygls' own handling of edits; see `Text`."""
 
     @lsp_method(lsp.TEXT_DOCUMENT_DID_CHANGE)
     def lsp_text_document__did_change(
         self, params: lsp.DidChangeTextDocumentParams
     ) -> Generator[Any, Any, None]:
-        """Hand the edit on as it came."""
+        """Pass the edit on unchanged."""
         yield self.fm.features[lsp.TEXT_DOCUMENT_DID_CHANGE], (params,), None
 
 
-QUIET = 0.2  # seconds without an edit after which findings are looked for
+QUIET = 0.2  # seconds without an edit after which diagnostics are computed
 
 _KINDS = {
     "name": lsp.CompletionItemKind.Variable,
@@ -50,7 +50,7 @@ _KINDS = {
 
 
 class Server(LanguageServer):
-    """The state of a session: texts that are open, and what was made of them."""
+    """The state of a session: the open texts and their documents."""
 
     def __init__(self) -> None:
         super().__init__("rvmon", __version__, protocol_cls=Protocol)
@@ -61,25 +61,25 @@ class Server(LanguageServer):
         self._sent: dict[str, Document] = {}
 
     def document(self, uri: str) -> Document:
-        """A document as it is now."""
+        """The document of the current text, compiled if it has changed."""
         known = self._documents.get(uri)
         if known is None or known.text is not self.texts[uri]:
             known = self._documents[uri] = Document(uri, self.texts[uri], self._read)
         return known
 
     def latest(self, uri: str) -> Document:
-        """A document as it was when it was last looked at: that takes no time."""
+        """The document as last compiled, perhaps of an older text; fast."""
         return self._documents.get(uri) or self.document(uri)
 
     def _read(self, path: Path) -> str:
-        """The text of a file that is imported, as it is in the editor if it is open there."""
+        """The text of an imported file; that in the editor if it is open there."""
         wanted = os.path.abspath(path)
         open_ = (text for uri, text in self.texts.items() if to_fs_path(uri) == wanted)
         text = next(open_, None)
         return text_of_file(path) if text is None else text.code
 
     def take(self, uri: str, text: Text | None) -> None:
-        """Take a document as it is now, or closed; what may import it is to be read anew."""
+        """Set the text of a document, `None` if it was closed; reread documents with imports."""
         if text is None:
             self.texts.pop(uri, None)
         else:
@@ -87,7 +87,7 @@ class Server(LanguageServer):
         for other, document in [*self._documents.items()]:
             if other not in self.texts or (other != uri and "import" in document.source.text):
                 del self._documents[other]
-        # Only edits come in quick succession.
+        # Wait only after edits, which come in quick succession.
         delay = 0 if uri not in self._sent or text is None else QUIET
         asyncio.get_running_loop().call_later(delay, self._publish_unless_changed, uri, text)
 
@@ -96,7 +96,7 @@ class Server(LanguageServer):
             self.publish()
 
     def publish(self) -> None:
-        """Send what is found now; of files that are not open, too, if an open one imports them."""
+        """Send the diagnostics of open files, and of the files that they import."""
         documents = [self.document(uri) for uri in self.texts]
         opened = {to_fs_path(uri) for uri in self.texts}
         findings = {
@@ -134,7 +134,8 @@ def _changed(server: Server, params: lsp.DidChangeTextDocumentParams) -> None:
 
 def _saved(server: Server, params: lsp.DidSaveTextDocumentParams) -> None:
     text = server.texts[params.text_document.uri]
-    server.take(params.text_document.uri, Text(text.raw, text.encoding))  # and what it imports
+    # A new object, so that the document is compiled again with its imports.
+    server.take(params.text_document.uri, Text(text.raw, text.encoding))
 
 
 def _closed(server: Server, params: lsp.DidCloseTextDocumentParams) -> None:
@@ -169,7 +170,11 @@ def _places(server: Server, params: lsp.ReferenceParams | lsp.RenameParams) -> l
 
 
 def _rename(server: Server, params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
-    """The edits that give a name another one, wherever it stands."""
+    """The edits that rename a name everywhere.
+
+    Raises:
+        JsonRpcInvalidParams: the new name is invalid or taken, or the name belongs to a library.
+    """
     document = server.document(params.text_document.uri)
     touched = document.names.at(document.place(params.position))
     if touched is None:
@@ -220,7 +225,7 @@ def _format(server: Server, params: lsp.DocumentFormattingParams) -> list[lsp.Te
     try:
         laid_out = format_text(text.code)
     except SpecError:
-        return []  # what is wrong is shown already
+        return []  # the editor shows the errors already
     if "\r\n" in text.raw:
         laid_out = laid_out.replace("\n", "\r\n")
     return [lsp.TextEdit(text.range(0, len(text.raw)), laid_out)] if laid_out != text.raw else []
