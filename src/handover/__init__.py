@@ -1,1 +1,4 @@
-"""The seed paper's handover testbench: generators, driver, simulation, checker, coverage."""
+"""The handover testbench of the seed paper: test generators, driver, simulation, requirements.
+
+Source: Araiza-Illan et al. 2015; see `handover.campaign.table1`.
+"""

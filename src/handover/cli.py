@@ -1,6 +1,6 @@
 """The command `handover`: campaigns of simulated handovers, and replays of single tests.
 
-Exit codes: those of `rvmon.cli.campaign`.
+Its exit codes are those of `rvmon.cli.campaign`.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit code.
 
     Args:
-        arguments: without the program's name; default `sys.argv[1:]`.
+        arguments: without the program's name; default: `sys.argv[1:]`.
     """
     return guarded(lambda: _parser().parse_args(arguments))
 

@@ -1,6 +1,6 @@
-"""The handover as an environment of Gymnasium, `rvmon/Handover-v0`; needs the extra `gym`.
+"""The handover as a Gymnasium environment, `rvmon/Handover-v0`; needs the extra `gym`.
 
-Importing this module registers it, as Gymnasium wants it: `gymnasium.make(
+Importing this module registers the environment, as is usual for Gymnasium; `gymnasium.make(
 "handover.environment:rvmon/Handover-v0")` does both.
 """
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rvmon.session import Spec
 
 STEP_S = 0.1
-"""Seconds from one step to the next: as often as the world publishes where the hand is."""
+"""Seconds per step, the period at which the world publishes the position of the hand."""
 
 HORIZON_S = 200.0
 
@@ -39,7 +39,7 @@ ACTIONS: Mapping[str, Action | None] = {
     "open the hand": SetParam("hpressureOk", 0),
     "withdraw": Withdraw(),
 }
-"""The actions of the person, by name; an action of the environment is the number of an entry."""
+"""The actions of the person, by name; an action of the environment is the index of an entry."""
 
 OBSERVED: Mapping[str, tuple[float, float]] = {
     "seconds since the start": (0.0, HORIZON_S),
@@ -52,7 +52,7 @@ OBSERVED: Mapping[str, tuple[float, float]] = {
     "z of the hand [m]": (-2.0, 2.0),
     "whether the hand holds the piece": (0.0, 1.0),
 }
-"""The entries of an observation, in this order, with the least and the greatest value."""
+"""The entries of an observation, in order, each with its smallest and largest value."""
 
 _WAIT = SetParam("time", round(STEP_S / 0.05))
 _STEP_NS = round(STEP_S * TICKS_PER_SECOND)
@@ -60,22 +60,22 @@ _HORIZON_STEPS = round(HORIZON_S / STEP_S)
 
 
 class HandoverEnv(gymnasium.Env[NDArray[np.float32], np.int64]):
-    """A robot hands an object over, and the agent is the person.
+    """A robot hands an object over to a person, who is the agent.
 
     The robot and the world are those of the testbench. The reward is 1 in the step in which the
     robot releases the piece. An episode is terminated when the robot has ended or crashed, and
-    truncated after 200 s. What happens follows from the seed of `reset` and the actions.
+    truncated after 200 s. The seed of `reset` and the actions determine the episode.
 
-    The person comes after 3 to 5.5 s, and does one thing at a time: it takes 2.2 s to say
-    something. What is to be begun meanwhile is not (`info["begun"]`). `info["samples"]` has what
-    was published in the step, as recordings have it: instants in ns, values by name.
+    The person comes after 3 to 5.5 s and does one thing at a time; sending a signal takes 2.2 s. An
+    action given meanwhile is not started, and `info["begun"]` is then false. `info["samples"]` has
+    what was published in the step, as in a recording: instants in ns, values by name.
 
     Args:
         robot: `"correct"` or `"legacy"`.
-        mutation: a name of `handover.robot.mutants.MUTATIONS`, for a robot with a fault.
+        mutation: a name from `handover.robot.mutants.MUTATIONS`, for a robot with a planted fault.
 
     Raises:
-        TestError: no robot or mutation of that name; from `reset`.
+        TestError: from `reset`, if there is no robot or mutation of that name.
     """
 
     def __init__(self, *, robot: str = "correct", mutation: str | None = None) -> None:
@@ -93,7 +93,7 @@ class HandoverEnv(gymnasium.Env[NDArray[np.float32], np.int64]):
         seed: int | None = None,
         options: dict[str, Any] | None = None,  # noqa: ARG002 - Gymnasium has it so
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """Begin an episode."""
+        """Start an episode."""
         super().reset(seed=seed)
         self._seed = int(self.np_random.integers(2**31)) if seed is None else seed
         self._chosen: Action | None = None
@@ -107,7 +107,7 @@ class HandoverEnv(gymnasium.Env[NDArray[np.float32], np.int64]):
         return self._observed(self._played), {"samples": (), "begun": False}
 
     def _acts(self) -> Iterator[Action]:
-        """The person's actions, each at the instant at which the one before is over."""
+        """The person's actions: the chosen one if there is any, then a wait of one step."""
         while True:
             for action in (self._chosen, _WAIT):
                 if action is not None:
@@ -118,11 +118,11 @@ class HandoverEnv(gymnasium.Env[NDArray[np.float32], np.int64]):
     def step(
         self, action: np.int64
     ) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
-        """Begin an action, and let a tenth of a second pass.
+        """Start an action and let 0.1 s pass.
 
         Raises:
-            ResetNeeded: no episode has begun.
-            InvalidAction: that is none.
+            ResetNeeded: `reset` was not called before.
+            InvalidAction: there is no such action.
         """
         if self._played is None:
             raise gymnasium.error.ResetNeeded("call `reset` before the first step")
@@ -131,7 +131,7 @@ class HandoverEnv(gymnasium.Env[NDArray[np.float32], np.int64]):
         self._chosen = chosen = tuple(ACTIONS.values())[action]
         self._steps += 1
         world = self._played.world
-        world.run(self._steps * _STEP_NS - 1)  # what comes at the instant itself, comes after it
+        world.run(self._steps * _STEP_NS - 1)  # the end instant itself belongs to the next step
         samples = world.recorder.samples[self._reported :]
         self._reported += len(samples)
         happened = {name for _, values in samples for name in values}
@@ -147,7 +147,7 @@ class HandoverEnv(gymnasium.Env[NDArray[np.float32], np.int64]):
 
     @property
     def test(self) -> AbstractTest:
-        """The episode so far as a test, which `handover replay` plays again, to its instant."""
+        """The episode so far as a test, which `handover replay` can play up to this instant."""
         return AbstractTest(
             name="episode",
             strategy="directed",
@@ -171,7 +171,10 @@ class HandoverEnv(gymnasium.Env[NDArray[np.float32], np.int64]):
 
 
 def published(spec: Spec) -> Callable[[object, object, Mapping[str, Any]], list[Sample]]:
-    """A function from a step to the samples of a specification's names: `observe` of `Judged`."""
+    """Make the `observe` function of `rvmon.adapters.gym.Judged` for a specification.
+
+    It returns the samples of a step, with only the names that the specification declares.
+    """
     declared = {*spec.schema.signals, *spec.schema.events}
 
     def observe(_: object, __: object, info: Mapping[str, Any]) -> list[Sample]:

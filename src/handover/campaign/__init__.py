@@ -1,1 +1,1 @@
-"""Campaigns: many tests on all cores, their table, their files and pages."""
+"""The campaign of simulated handovers: its strategies, gates, tables and pages."""

@@ -37,12 +37,12 @@ STRATEGIES: Mapping[str, Strategy] = {
     "model-based-shortest": partial(model_based, policy="shortest"),
     "model-based-fastest": partial(model_based, policy="fastest"),
     "disturbed": disturbed,
-    "directed": lambda _count, _seed: directed(),  # files: all of them, always the same
+    "directed": lambda _count, _seed: directed(),  # all test files, regardless of count and seed
 }
 """The strategies, in the order of the columns of a table."""
 
 ROBOTS = {"correct": "Correct robot", "legacy": "Robot of the paper's testbench"}
-"""The names of the two robots in titles."""
+"""The titles of the two robots."""
 
 
 def handover_campaign(
@@ -52,12 +52,12 @@ def handover_campaign(
 
     Args:
         robots: `correct`, `legacy` or both, in the order of the tables.
-        monitors: `False` judges nothing, to measure what judging costs.
-        conforming: the number of runs of each strategy compared with the model for the page, a
-            second each; 0: nothing is shown of the model there.
+        monitors: `False` judges nothing, to measure the cost of judging.
+        conforming: the number of runs of each strategy that are compared with the model for the
+            page, which takes a second each; 0: the page has no section on the model.
 
     Raises:
-        RvmonError: there is no pymunk to play with.
+        RvmonError: pymunk is not installed.
     """
     if find_spec("pymunk") is None:
         raise not_installed("the simulation", "pymunk")

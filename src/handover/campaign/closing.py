@@ -1,4 +1,4 @@
-"""Closing the holes of the handover campaign: queries to the model, and unreachable items."""
+"""How the handover campaign closes its holes: queries to the model, and unreachable items."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ STATES = {
     "release": "release",
     "done": "done",
 }
-"""The robot's states by the locations of the model's robot."""
+"""The robot's state for each location of the model's robot."""
 
 _READ = {"yes": "OK", "no": "BAD"}
 _OUTCOMES = {"given": "released", "kept": "withheld", "gave_up": "timedOut"}
@@ -46,7 +46,7 @@ _CLAIMS = {
 
 
 def closing() -> Closing:
-    """The campaign's way to close its holes."""
+    """How the campaign closes its holes."""
     return Closing(
         strategies=("pseudorandom", "constrained", "disturbed"),
         written=("directed",),
@@ -67,12 +67,12 @@ def closing() -> Closing:
 
 
 def _test(template: Template[Any], seed: int) -> AbstractTest:
-    """A test that follows a run of the model; no signals are lost, so that it shows that run."""
+    """A test that follows a run of the model; no signals are lost, as the model loses none."""
     return structs.replace(instantiate(template, seed), startup_loss=False)
 
 
 def query_of(group: str, item: str) -> str:
-    """The query to the model for an item of the coverage model; empty if there is none.
+    """The model's query for an item of the coverage model; empty if there is none.
 
     >>> query_of("ending", "kept")
     'E<> withheld'
@@ -84,7 +84,8 @@ def query_of(group: str, item: str) -> str:
             f"and locationRead == {_READ[location]} and {_OUTCOMES[outcome]}"
         )
     if group == EDGES and item in _SENSED_IN_PART:
-        # The shortest run has a human of whom nothing is sensed; one who turns away is seen to.
+        # In the shortest run, nothing is ever sensed of the human. Ask for one whose pressure is
+        # sensed, while gaze or location is not.
         return "E<> robot.done and timedOut and pressureRead == OK"
     if group == "ending":
         return f"E<> {_OUTCOMES[item]}"
@@ -111,4 +112,4 @@ UNREACHABLE = (
         for item in (JUST_BEFORE, AT)
     ),
 )
-"""Items that no test of the correct robot can hit; a hit shows an error in this list."""
+"""Items that no test of the correct robot can hit; a hit reveals an error in this list."""

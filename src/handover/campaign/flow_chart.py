@@ -1,4 +1,4 @@
-"""Draws the robot's states as a flow chart, filled by the share of statements that ran."""
+"""Draw the robot's states as a flow chart, filled by the share of statements that ran."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rvmon.texts import percent_text
 
 LEFT, BOX_WIDTH, BOX_HEIGHT, PITCH = 34, 200, 34, 54
 LANE = 13
-"""Distance between two lines that bypass states on the way to the last one."""
+"""Distance between two lines that bypass other states on the way to the last one."""
 
 RIGHT = LEFT + BOX_WIDTH
 CENTRE = LEFT + BOX_WIDTH / 2
@@ -21,7 +21,7 @@ CENTRE = LEFT + BOX_WIDTH / 2
 def flow_chart(figures: StrategySummary) -> ET.Element:
     """Draw the chart of one strategy.
 
-    A line is dashed if no test took that transition; the number beside it is how many did.
+    The number beside a line is how many tests took that transition; it is dashed if none did.
     """
     exits = [
         (source, target)
@@ -90,7 +90,7 @@ def _loop(transition: Transition, figures: StrategySummary) -> ET.Element:
 
 
 def _exit(transition: Transition, lane: int, figures: StrategySummary) -> ET.Element:
-    """A line past all other states to the last one; the first of them is the outermost."""
+    """A line past all other states to the last one; the line of the first state is outermost."""
     start = _top(transition[0]) + BOX_HEIGHT / 2
     end = _top(transition[1]) + BOX_HEIGHT / 2
     x = RIGHT + LANE * lane + 4

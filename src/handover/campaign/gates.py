@@ -37,16 +37,16 @@ _COVERAGE = {
     "disturbed": 90.0,
     "directed": 97.0,
 }
-"""Per cent of the correct robot's coverage model that a hundred tests cover with any seed."""
+"""Percentage of the correct robot's coverage model that 100 tests cover with any seed."""
 
 _SELDOM = ("T54", "T55", "T65", *_NEEDS["a human who does not come"])
-"""The requirements that at most two of a hundred disturbed tests trigger."""
+"""Requirements that at most two of 100 disturbed tests trigger."""
 
 
 def gates(robots: Collection[str]) -> dict[str, Gate]:
-    """The gate of each strategy that need not trigger all.
+    """The gate of each strategy that need not trigger all requirements.
 
-    R1 to R5 are all that the legacy robot is judged by.
+    The legacy robot is judged only by R1 to R5.
 
     >>> gates(["legacy"])["constrained"].untriggered
     ('R1',)
@@ -59,7 +59,8 @@ def gates(robots: Collection[str]) -> dict[str, Gate]:
                 for name in _NEEDS[need]
                 if "correct" in robots or name.startswith("R")
             ),
-            # A robot whom nobody calls polls so slowly that the horizon comes first.
+            # The polls of a robot that nobody activates slow down so much that the horizon comes
+            # before it gives up.
             inconclusive=("R4",) if "legacy" in robots else (),
         )
         for strategy, lacks in _LACKS.items()

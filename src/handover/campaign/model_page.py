@@ -1,4 +1,4 @@
-"""The model on the page: claims about all of its runs, and runs compared with it."""
+"""The model's section of the page: claims about all of its runs, and runs compared with it."""
 
 from __future__ import annotations
 
@@ -30,16 +30,16 @@ if TYPE_CHECKING:
     from rvmon.models.conform import Conformance
 
 SUFFIX = "_all"
-"""Suffix of the queries that state a requirement for all runs of the model."""
+"""Suffix of the queries that state a requirement about all runs of the model."""
 
 ROBOT = "correct"
 """The robot that the model describes."""
 
 SIMULATED, SIMULATED_UNITS = 1000, 1200
-"""Random runs of the model per query, and their length: a handover is over within a minute."""
+"""Random runs of the model per query, and their length in units: a handover ends within 60 s."""
 
 Addresses = Mapping[RobotTest, str]
-"""Addresses of the pages."""
+"""Addresses of the pages of tests."""
 
 
 Row = tuple[str | Markup, ...]
@@ -57,9 +57,12 @@ _WITNESS = Markup('{}<a href="{}" title="the robot plays it"> (witness)</a>')
 def model_sections(
     tests: Mapping[RobotTest, Test], addresses: Addresses, count: int
 ) -> list[Markup]:
-    """The section of a campaign's page; nothing if no run can be compared with the model.
+    """The section of a campaign's page; empty if no run can be compared with the model.
 
-    Of the runs of each strategy the first `count` are compared with it.
+    Args:
+        tests: the played tests.
+        addresses: addresses of their pages.
+        count: the number of runs of each strategy that are compared with the model.
     """
     strategies: dict[str, list[AbstractTest]] = {}
     for (robot, _), test in tests.items():
@@ -129,7 +132,7 @@ def _conformer() -> Callable[[AbstractTest], Conformance]:
 
 
 def edge_tests() -> list[str]:
-    """The edges whose witnesses together cover all edges that any run can take."""
+    """Names of edges whose witnesses together cover all edges that any run can take."""
     witnesses = _witnesses()
     answers = {name: witnesses.answer((EDGES, name)) for name in witnesses.groups[0].items}
     runs = {id(answer.run): name for name, answer in answers.items() if isinstance(answer, Witness)}
@@ -144,7 +147,7 @@ def _witnesses() -> Witnesses:
 
 
 def _follower() -> Callable[[str], frozenset[str]]:
-    """A function that plays a test made from a run of the model, and returns the edges shown."""
+    """Make a function that plays the test of an edge's witness and returns the edges it shows."""
     witnesses = _witnesses()
 
     def shown(edge: str) -> frozenset[str]:
@@ -159,7 +162,7 @@ def _follower() -> Callable[[str], frozenset[str]]:
 
 
 def _edge_rows(shown: frozenset[str]) -> list[Row]:
-    """By automaton, the number of edges shown by the robot's runs, and the remaining edges."""
+    """A row per automaton: the number of edges that the robot's runs show, and the other edges."""
     argued = {
         unreachable.item: unreachable.reason
         for unreachable in UNREACHABLE
@@ -181,7 +184,7 @@ def _edge_rows(shown: frozenset[str]) -> list[Row]:
 
 
 def _strategy_row(pairs: Sequence[tuple[AbstractTest, Conformance]], addresses: Addresses) -> Row:
-    """The number of runs of a strategy that conform, and the points where the others diverge."""
+    """The row of a strategy: how many of its runs conform, and where the others diverge."""
     others = []
     for test, found in pairs:
         if found.conforms is not True:

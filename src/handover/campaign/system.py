@@ -14,11 +14,11 @@ OUTCOMES = {
     "released": "the piece was released",
     "withheld": "the robot kept the piece",
 }
-"""The endings of a handover, by the event that reports each."""
+"""The outcomes of a handover, by the event that reports each."""
 
 
 class Handover:
-    """One of the two robots, and the human, in their world.
+    """One of the two robots with the human, in the simulated world.
 
     Args:
         robot: `correct` or `legacy`.
@@ -28,7 +28,7 @@ class Handover:
         self._robot = robot
 
     def play(self, test: AbstractTest, observer: Observer) -> Run:
-        """Play a test from the human's script and its seed to its horizon."""
+        """Play a test to its horizon; the run depends on the test's script and seed alone."""
         run = run_test(
             test,
             robot=self._robot,

@@ -1,4 +1,4 @@
-"""The paper's Table 1 and ours, the model's verdicts, and the spread of counts over seeds.
+"""The paper's Table 1 next to ours, the model's verdicts, and the spread of counts over seeds.
 
 Source: D. Araiza-Illan, D. Western, A. Pipe, K. Eder, "Coverage-Driven Verification: An approach
 to verify code for robots that directly interact with humans", Haifa Verification Conference 2015,
@@ -30,16 +30,16 @@ _PUBLISHED = {
     "constrained": ((0, 0, 100, 0), (87, 0, 13, 0), (87, 0, 13, 0), (98, 0, 0, 2), (93, 0, 7, 0)),
     "model-based": ((3, 0, 1, 0), (1, 0, 3, 0), (4, 0, 0, 0), (4, 0, 0, 0), (4, 0, 0, 0)),
 }
-"""Tests that are P, F, NT and I, of R1 to R5."""
+"""The numbers of tests with P, F, NT and I, for R1 to R5."""
 
 FITTED_BY_LOSS = {("constrained", "R5")}
-"""Cells that the fitted start-up loss reproduces by construction."""
+"""Cells of the table that the fitted start-up loss reproduces by construction."""
 
 FITTED_BY_SLOWNESS = {("pseudorandom", "R4"), ("constrained", "R4")}
-"""Cells from which the slowness of polls was taken."""
+"""Cells to which the slowness of polls was fitted."""
 
 FITTED = FITTED_BY_LOSS | FITTED_BY_SLOWNESS
-"""Cells that are no evidence."""
+"""Cells that are not evidence, as they were fitted."""
 
 
 def paper_table() -> VerdictTable:
@@ -58,15 +58,15 @@ def paper_table() -> VerdictTable:
 
 
 SPREAD_FILE = "spread.json"
-"""Beside this module; `python -m benchmarks.table1 bands --seeds 10 --write` writes it."""
+"""Next to this module; `python -m benchmarks.table1 bands --seeds 10 --write` writes it."""
 
 
 class Spread(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Counts over campaigns of 100 tests for each random strategy."""
+    """The ranges of counts over campaigns with 100 tests of each random strategy."""
 
     first: int  # seed of the first campaign
     last: int  # seed of the last campaign
-    # the least and the greatest count by strategy, requirement and verdict
+    # The smallest and the largest count, by strategy, requirement and verdict.
     ranges: Mapping[str, Mapping[str, Mapping[str, tuple[int, int]]]]
 
 
@@ -107,7 +107,7 @@ def _path() -> Path:
 def check_model(requirements: tuple[str, ...]) -> dict[str, bool | None]:
     """Ask the model checker for a run that shows each requirement, as the paper did.
 
-    What the model has no query for cannot be expressed: `None`.
+    The result is `None` for a requirement that the model cannot express and so has no query for.
     """
     from handover.model import handover_network
     from rvmon.models.search.verify import verify
@@ -167,7 +167,7 @@ def checked_of(summary: CampaignSummary) -> dict[str, bool | None]:
 
 
 def _fitted(table: VerdictTable, unfitted: VerdictTable) -> str:
-    """The cells that were fitted, and their counts without the fit."""
+    """The fitted cells with their counts with and without the fit, in words."""
     shown = []
     for strategy, requirement in sorted(FITTED_BY_LOSS):
         with_fit, without = (
@@ -187,7 +187,7 @@ def _fitted(table: VerdictTable, unfitted: VerdictTable) -> str:
 
 
 def table_document(summary: CampaignSummary) -> dict[str, object]:
-    """The content of `table.json`; everything but `seconds` follows from the seed."""
+    """The content of `table.json`; the seed determines everything but `seconds`."""
     checked = checked_of(summary)
     more: dict[str, object] = {"model_checking": checked} if checked else {}
     table = paper_table()

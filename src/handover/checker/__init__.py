@@ -1,4 +1,4 @@
-"""The checker: the files with the requirements of the robots."""
+"""The checker: the specification files of the robots."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ __all__ = ["SPECS", "situations_path", "spec_path"]
 
 
 SPECS = {"correct": "specs/handover_correct.rv", "legacy": "specs/handover_legacy.rv"}
-"""The specification of each robot: the paper's words and the truth of the world, or the triggers of
-the paper's testbench."""
+"""The specification of each robot. That of the correct one follows the words of the paper and also
+checks the true state of the world; that of the legacy one has the triggers of its testbench."""
 
 
 def spec_path(robot: str) -> Path:
-    """The file of a robot's requirements, in an installed package or in the source tree.
+    """The file of a robot's requirements, in the installed package or in the source tree.
 
     >>> spec_path("correct").name
     'handover_correct.rv'
@@ -35,4 +35,4 @@ def _placed(name: str) -> Path:
     packaged = package / name
     path = packaged if packaged.exists() else package.parents[1] / name
     here = Path.cwd()
-    return path.relative_to(here) if path.is_relative_to(here) else path  # as people would write it
+    return path.relative_to(here) if path.is_relative_to(here) else path  # short in messages

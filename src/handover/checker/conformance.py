@@ -1,4 +1,4 @@
-"""Simulated runs compared with the network: does the robot do what the model says it does?"""
+"""Compare simulated runs with the network: does the robot behave as the model says?"""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 OBSERVED = ("grip_closed", "informed", "sensed", "decided", "withheld", "released", "timed_out")
 """The robot's messages that are labels of the network.
 
-Of what the human does only the readiness is watched, where the model's human has it: a run conforms
-if some human who gets ready then would have made the robot of the model say the same things at the
-same times.
+Of the human, only the readiness is observed, and only where the model's human can be ready. So a
+run conforms if some human who gets ready at that instant would make the robot of the model send the
+same messages at the same times.
 """
 
 READY = "humanIsReady"
@@ -22,15 +22,15 @@ READY_AFTER_NS = (500_000_000, 20_000_000_000)
 """The earliest and latest delay after which the model's human, once informed, gets ready."""
 
 TOLERANCE_NS = 110_000_000
-"""The robot looks for signals ten times a second, the network's robot hears them at once."""
+"""The robot polls for signals ten times a second; the network's robot receives them at once."""
 
 
 def actions_of(run: Run) -> tuple[list[Recorded], frozenset[str]]:
-    """The observed actions of a run, in order, and the labels that are observed at all.
+    """The observed actions of a run, in order, and the set of observed labels.
 
-    The robot hears the first readiness after it has informed the human; it is an input of the model
-    that the robot has to go by. One at an instant at which the model's human has none, such as
-    before, is not observed: whether the robot heard it is left open.
+    The human's first readiness is an input, to which the model's robot must react. If it comes when
+    the model's human cannot be ready, for example before being informed, readiness is not an
+    observed label: the model may then assume any readiness.
     """
     from rvmon.models.conform import Recorded
 

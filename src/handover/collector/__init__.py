@@ -1,1 +1,1 @@
-"""The coverage collector: the robot's statements and transitions that tests should reach."""
+"""The coverage collector: the robot's statements and transitions that tests should cover."""

@@ -1,4 +1,4 @@
-"""The code of the robot whose coverage is measured: a block of statements per state."""
+"""The robot's code whose coverage is measured: a block of statements per state."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from handover.robot.handover import STATES, HandoverRobot
 from rvmon.cdv import Block, Code, blocks_of
 
 COMMON = "common"
-"""The block of the code that several states share, or none."""
+"""The block of the code that belongs to several states, or to none."""
 
 TRANSITIONS = (
     ("reset", "receive_activation"),
@@ -36,7 +36,7 @@ _EQUIVALENT = Path(__file__).with_name("equivalent.toml")
 
 
 def robot_code() -> Code:
-    """The blocks of the robot's functions, without their first lines: those run at import.
+    """The robot's code as blocks, without the `def` lines, which run at import.
 
     >>> [block.name for block in robot_code().blocks][-2:]
     ['done', 'common']
@@ -44,7 +44,7 @@ def robot_code() -> Code:
     path = str(handover.__file__)
     owners = state_of_functions()
     names = {f"{HandoverRobot.__name__}.{name}": owners[name] for name in (*STATES, *owners)}
-    # What runs before any step of the robot cannot be measured: it counts with no state.
+    # `__init__` runs before the first measured step of the robot, so it is left out.
     first = f"{HandoverRobot.__name__}.__init__"
     (before,) = (block for block in blocks_of(path) if block.name == first)
     blocks = {block.name: block.lines - before.lines for block in blocks_of(path, names)}
@@ -63,8 +63,8 @@ def robot_code() -> Code:
 def state_of_functions() -> dict[str, str]:
     """The state of each function of the state machine, in the order of the file.
 
-    A state's method belongs to it; a helper belongs to the one state that calls it, directly or
-    through other helpers, and to `COMMON` if several do.
+    The method of a state belongs to the state. A helper belongs to the only state that calls it,
+    directly or through other helpers, or to `COMMON` if several states do.
 
     >>> state_of_functions()["go_to"], state_of_functions()["poll_signal"]
     ('move', 'common')

@@ -1,4 +1,4 @@
-"""The driver: plays an abstract test against a robot in the simulated world."""
+"""The driver, which plays an abstract test against a robot in the simulated world."""
 
 from handover.driver.play import Run, run_test
 

@@ -1,4 +1,4 @@
-"""Play one abstract test: robot, human and world from the test's seed to its horizon."""
+"""Play an abstract test with robot, human and world, from its start to its horizon."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Conditions:
-    """The seeded conditions of one run; the posture ranges are drawn as they are needed."""
+    """The random conditions of a run; postures are drawn later, when they are needed."""
 
     human_start_s: float  # the instant at which the human's script starts
     connected: bool  # whether the human's signals reach the robot at all
     timeout_time_s: int  # the parameter of the legacy robot
-    poll_growth_s: float  # the delay that each subscription adds to a poll
+    poll_growth_s: float  # the delay that each left-over subscription adds to a poll
     start_pose: Joints  # joint angles after the reset, rad
 
 
 def draw(seed: int, *, startup_loss: bool) -> Conditions:
     """Draw the conditions of a run.
 
-    Switching the loss off changes nothing else: its number is drawn all the same.
+    Switching the loss off changes nothing else, as its random number is drawn in any case.
     """
     rng = stream(seed, "conditions")
     a, b, c = p.ZERO_POSE
@@ -63,7 +63,7 @@ SampleValue = bool | float | None
 SampleValues = Mapping[str, SampleValue]
 
 Observer = Callable[[int, SampleValues], None]
-"""Called with each whole sample `(t_ns, values)` as soon as simulated time has passed it."""
+"""Called with each complete sample `(t_ns, values)` once simulated time has passed it."""
 
 AroundRobotStep = Callable[[], AbstractContextManager[object]]
 """Makes the context in which one step of the robot's code runs (for statement coverage)."""
@@ -71,21 +71,21 @@ AroundRobotStep = Callable[[], AbstractContextManager[object]]
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """A simulated test, not judged yet."""
+    """A simulated test that is not judged yet."""
 
-    # `(t_ns, values)`, strictly increasing, only what changed or occurred; events are `True`, a
-    # signal that is unknown is `None`; distances in m, speeds in m/s
+    # `(t_ns, values)` in strictly increasing order, with changed signals and events only. An event
+    # is `True`, an unknown signal `None`; distances are in m, speeds in m/s.
     samples: tuple[tuple[int, SampleValues], ...]
-    # `(t_ns, state)` at each entry of a robot state, also from itself (a poll)
+    # `(t_ns, state)` for each entry of a robot state, re-entries (polls) included.
     states: tuple[tuple[int, str], ...]
     end_ns: int  # the horizon
     stepped_s: float  # simulated seconds for which the physics was stepped
-    error: str | None  # the exception of the robot's code as one text, if it crashed
-    scene: Scene | None  # over time, if asked for
+    error: str | None  # the exception of the robot's code as text, if it crashed
+    scene: Scene | None  # the scene over time, if requested
 
 
 def run_test(test: AbstractTest, **options: Any) -> Run:
-    """Simulate a test and return all that was published.
+    """Simulate a test and return everything that was published.
 
     The same test gives the same run in every process, whatever was run before.
 
@@ -94,7 +94,7 @@ def run_test(test: AbstractTest, **options: Any) -> Run:
         **options: as for `begun`.
 
     Raises:
-        TestError: no robot or mutation of that name.
+        TestError: there is no robot or mutation of that name.
     """
     played = begun(test, **options)
     horizon_ns = round(test.horizon_s * TICKS_PER_SECOND)
@@ -113,9 +113,9 @@ def run_test(test: AbstractTest, **options: Any) -> Run:
 class Played:
     """A test that is being played."""
 
-    world: World  # runs it, as far as it is asked to
-    process: Process  # the robot's
-    states: list[tuple[int, str]]  # `(t_ns, state)` at each entry of a robot state so far
+    world: World  # runs the test up to an instant
+    process: Process  # the robot's process
+    states: list[tuple[int, str]]  # `(t_ns, state)` for each entry of a robot state so far
 
 
 def begun(
@@ -130,24 +130,25 @@ def begun(
     observer: Observer | None = None,
     around_robot_step: AroundRobotStep | None = None,
 ) -> Played:
-    """Set up robot, human and world of a test; nothing has happened yet.
+    """Set up robot, human and world of a test, without running them.
 
     Args:
         test: the actions of the human, and the seed of everything random.
-        actions: of the human, instead; each is drawn when the one before is over.
+        actions: actions of the human in place of those of the test; the next one is taken from the
+            iterable when the previous one is over.
         robot: `"correct"` or `"legacy"`; default: the robot that the test names, else correct.
-        mutation: default: the one that the test names.
-        startup_loss: `False` switches the fitted loss of signals to the legacy robot off in any
-            case; the correct one loses none.
+        mutation: name of a planted fault; default: the one that the test names.
+        startup_loss: `False` switches off the fitted loss of signals to the legacy robot; the
+            correct robot loses none.
         jump: skip the physics while nothing moves; `False` steps all of it.
         films: keep the scene over time for an animation.
-        observer: called with each whole sample, in time order.
+        observer: called with each complete sample, in time order.
         around_robot_step: context in which each step of the robot's code runs.
 
     Raises:
-        TestError: no robot or mutation of that name.
+        TestError: there is no robot or mutation of that name.
     """
-    # The physics engine takes a tenth of a second to import: only who simulates pays.
+    # Imported here, as the physics engine takes a tenth of a second to load.
     from handover.driver.script import Script
     from handover.robot.behaviour import BEHAVIOURS
     from handover.robot.handover import HandoverRobot

@@ -29,17 +29,17 @@ INFORMED = "informed"
 
 @dataclass(frozen=True, slots=True)
 class Script:
-    """Plays actions one after the other; each begins when the one before is over."""
+    """Plays actions one after the other; each starts when the previous one is over."""
 
     actions: Iterable[Action]  # of the abstract test
     node: Node  # the human's connection to the bus
     human: Human  # the body that takes the postures
     draw: Callable[[float, float], float]  # draws a number of a posture from its range
-    start_s: float  # seconds until the script begins
+    start_s: float  # seconds until the script starts
     connected: bool  # whether signals reach the robot
 
     def run(self) -> Program:
-        """Wait for the process to be up, then play all actions, or up to a wait in vain."""
+        """Wait until the process is up, then play the actions; stop if a wait times out."""
         yield self.start_s
         for action in self.actions:
             match action:
@@ -77,7 +77,7 @@ class Script:
                 return
 
     def _take_posture(self, param: str, *, ok: bool) -> None:
-        """Draw a posture from its range, and take it; other parameters have no effect."""
+        """Draw a posture from its range and take it; other parameters have no effect."""
         match param:
             case "hgazeOk":
                 self._look(ok=ok)

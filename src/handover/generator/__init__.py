@@ -1,1 +1,1 @@
-"""Abstract tests: their type, their files, and the strategies that make them."""
+"""Abstract tests: their type, their files, and the strategies that generate them."""

@@ -1,4 +1,4 @@
-"""Abstract tests: the human's behaviour as a linear sequence of high-level actions."""
+"""Abstract tests: the human's behaviour as a sequence of high-level actions."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ SEND_DELAY_S = 2.0
 """Seconds that the human takes to send a signal."""
 
 SEND_PAUSE_S = 0.2
-"""Seconds of pause after it."""
+"""Seconds of pause after a signal."""
 
 
 class SendSignal(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="send_signal"):
@@ -42,7 +42,7 @@ class SendSignal(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="s
 
 
 class ReceiveSignal(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="receive_signal"):
-    """The human waits for a signal of the robot; `setv` waits for nothing."""
+    """The human waits for a signal from the robot; `setv` waits for nothing."""
 
     signal: RobotSignal
 
@@ -70,14 +70,15 @@ class AbstractTest(Test, frozen=True, kw_only=True):
 
     Attributes:
         strategy: the generator that made it.
-        actions: in order; each begins when the one before is over.
-        robot: the robot it is written for; `None`: any.
-        mutation: a name of `handover.robot.mutants.MUTATIONS`, or `None` for the robot as it is.
-        postures: drawn from their ranges, or at the ends of these, where sensors may err.
+        actions: in order; each starts when the previous one is over.
+        robot: the robot that it is written for; `None`: any.
+        mutation: a name from `handover.robot.mutants.MUTATIONS`; `None`: no planted fault.
+        postures: whether they are drawn from their ranges, or from the ends of these, where sensors
+            may err.
         horizon_s: simulated seconds.
-        arrives_s: the instant at which the human begins; default: drawn, once the robot listens.
-        startup_loss: whether the human's signals may get lost as the processes start.
-        faults: of the sensors.
+        arrives_s: the instant at which the human starts; default: drawn, after the robot is up.
+        startup_loss: whether the human's signals may get lost when the processes start.
+        faults: faults of the sensors.
         scene: faults of the scene.
     """
 
@@ -94,7 +95,7 @@ class AbstractTest(Test, frozen=True, kw_only=True):
     removable: ClassVar[tuple[str, ...]] = ("actions",)
 
     def simpler(self) -> Iterator[Self]:
-        """Simpler tests: without one fault; then with a wait shorter by at least a quarter."""
+        """Simpler tests: first without one fault each, then with one wait cut by at least 1/4."""
         if self.startup_loss:
             yield structs.replace(self, startup_loss=False)
         for disturbance in ("faults", "scene"):
@@ -113,7 +114,7 @@ class AbstractTest(Test, frozen=True, kw_only=True):
 
 
 def directed() -> tuple[AbstractTest, ...]:
-    """The directed tests that come with the testbench, in order of name."""
+    """The directed tests that come with the testbench, sorted by name."""
     folder = resources.files("handover.generator") / "directed"
     files = sorted(
         (entry for entry in folder.iterdir() if entry.name.endswith(".json")),

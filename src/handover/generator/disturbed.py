@@ -1,8 +1,8 @@
 """Tests in which sensors, scene and person deviate from the protocol.
 
-All that is drawn stands here. The person is a Markov chain: what people do at a handover, and how
-often they do otherwise. Sensors and scene are as they should be in about half of the tests, so that
-one disturbance is seen alone.
+All probabilities and ranges are defined here. The person is a Markov chain of the steps of a
+handover, including deviations. In about half of the tests sensors and scene are undisturbed, so
+that single disturbances are seen alone.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ State = Literal["arrives", "waits", "attends", "takes", "holds", "leaves"]
 Acts = Callable[[random.Random], Sequence[Action]]
 
 OK = 0.9
-"""Probability of a correct posture, by the weights of the model."""
+"""Probability of a correct posture, as in the weights of the model."""
 
 LONGEST = 24
-"""Actions after which a person who goes in circles leaves."""
+"""The number of actions after which a person leaves who goes in circles."""
 
 
 def _pause(shortest_s: float, longest_s: float) -> Acts:
@@ -40,7 +40,7 @@ def _say(signal: Literal["activateRobot", "humanIsReady"]) -> Acts:
 
 
 def _take(rng: random.Random) -> Sequence[Action]:
-    """Look, reach and close the hand, in any order and not all at once."""
+    """Look, reach and close the hand, in any order with pauses."""
     postures = [
         SetParam("hgazeOk", int(rng.random() < OK)),
         SetParam("hlocationOk", int(rng.random() < OK)),
@@ -76,7 +76,7 @@ PERSON: Mapping[State, Sequence[tuple[float, Acts, State]]] = {
     "attends": (
         (0.77, _say("humanIsReady"), "takes"),
         (0.08, _say("activateRobot"), "attends"),  # the wrong signal
-        (0.05, _take, "attends"),  # takes it first
+        (0.05, _take, "attends"),  # takes it before being ready
         (0.05, _pause(1.0, 20.0), "attends"),
         (0.05, _one(Withdraw()), "leaves"),
     ),
@@ -94,22 +94,23 @@ PERSON: Mapping[State, Sequence[tuple[float, Acts, State]]] = {
         (0.05, _one(SetParam("hgazeOk", 0)), "leaves"),
     ),
 }
-"""By state: probability, action, and the next state.
+"""The transitions of each state: probability, actions, and the next state.
 
-The weights of the network (`handover.ta`) give the share of bad postures and of those who lose
-interest, 0.05 at each step. All other rates and pauses are free: each deviation has so much that
-among 100 tests several show it, and that three of ten follow the protocol to its end. That people
-ignore the robot, or hold on to the piece, is studied with failures that were asked of them (Thoduka
-et al. 2024, "A Multimodal Handover Failure Detection Dataset and Baselines", ICRA); when they reach
-is too (Moon et al. 2014, "Meet me where I'm gazing", HRI, 102 people). Neither gives a rate.
+The share of bad postures, and that of people who lose interest (0.05 at each step), are taken from
+the weights of the network (`handover.ta`). All other rates and pauses are free. They are chosen so
+that several of 100 tests show each deviation, and three of ten follow the protocol to its end.
+People who ignore the robot or hold on to the piece have been studied with acted failures (Thoduka
+et al. 2024, "A Multimodal Handover Failure Detection Dataset and Baselines", ICRA), and so has the
+instant of reaching (Moon et al. 2014, "Meet me where I'm gazing", HRI, 102 people). Neither study
+gives a rate.
 """
 
 
 def behave(rng: random.Random) -> tuple[Action, ...]:
     """The actions of one person, from arriving to leaving.
 
-    Source: as the seed's closing section asks for; a Markov usage model (Whittaker and Thomason
-    1994, "A Markov chain model for statistical software testing").
+    Source: suggested by the closing section of the seed paper; a Markov usage model (Whittaker and
+    Thomason 1994, "A Markov chain model for statistical software testing").
 
     >>> behave(random.Random(1))[0]
     SendSignal(signal='activateRobot')
@@ -125,51 +126,52 @@ def behave(rng: random.Random) -> tuple[Action, ...]:
 
 
 P_SENSORS: Final = 0.3
-"""The share of tests with one fault of the sensors, each kind equally often."""
+"""The share of tests with a sensor fault; each kind is equally likely."""
 
 NOISE_M: Final = (0.02, 0.2)
-"""Body trackers with depth cameras err by some centimetres at hand and head, by decimetres when
+"""Body trackers with depth cameras err by centimetres at hand and head, and by decimetres when body
 parts are hidden (Wang et al. 2015, "Evaluation of pose tracking accuracy in the first and second
 generations of Microsoft Kinect")."""
 
 DELAY_S: Final = (0.1, 1.0)
-"""From a tracker's usual latency to that of a loaded network."""
+"""From the usual latency of a tracker to that over a loaded network."""
 
 LOSS: Final = (0.1, 0.6)
-"""The share of lost readings: from a hand hidden now and then to one mostly hidden."""
+"""The share of lost readings: from a hand that is hidden now and then to one mostly hidden."""
 
 P_SLIPPERY: Final = 0.08
 GREASY: Final = 0.02
-"""Friction of greased rubber on wood: a piece with 0.05 still stays in the gripper."""
+"""Friction of greased rubber on wood; with 0.05, a piece would still stay in the gripper."""
 
 P_PLANNER: Final = 0.12
 PLAN_FAILURE: Final = (0.2, 0.8)
-"""Sampling planners find no path in time now and then; at 0.8 half of the tasks end by it."""
+"""Sampling-based planners sometimes find no path in time; at 0.8, this ends half of the tasks."""
 
 P_HIDDEN: Final = 0.08
 HIDDEN: Final = (0.2, 0.8)
-"""The share of looks for the piece in vain, past a person who moves about; as for plans."""
+"""The share of looks in which a moving person hides the piece; the same range as for plans."""
 
 P_RAISED: Final = 0.1
 RAISED_M: Final = (0.01, 0.06)
-"""Heights of the object that a piece may stand on: from a tray to a box."""
+"""Height of an object under the piece, from a tray to a box."""
 
 P_EARLY: Final = 0.1
 EARLY_S: Final = (0.0, 3.0)
-"""The human's process is up before the robot listens: its first signal comes two seconds later."""
+"""Starts of the human's process at which the robot may not listen yet; the first signal comes 2 s
+later."""
 
 P_IN_PLANE: Final = 0.5
-"""The hand is in the plane as often as in front of it, as the plane does not tell which."""
+"""The hand is as often in the plane as in front of it, as a planar scene cannot tell which."""
 
 P_BESIDE: Final = 0.12
 BESIDE_M: Final = (0.35, 0.8)
-"""The distance of a person from the robot's way: from in it to well beside it."""
+"""The position of a person along x, from in the robot's way to well beside it."""
 
 P_FAR_HAND: Final = 0.5
 """The probability that the person takes the piece with the far hand."""
 
 P_AT_LIMITS: Final = 0.2
-"""Postures at the ends of the seed's ranges: its authors' corner cases of gaze and location."""
+"""The share of tests with postures at the ends of the seed paper's ranges, its corner cases."""
 
 
 FREE: Final = (
@@ -177,11 +179,11 @@ FREE: Final = (
     *("PLAN_FAILURE", "P_HIDDEN", "HIDDEN", "P_RAISED", "RAISED_M", "P_EARLY", "EARLY_S"),
     *("P_IN_PLANE", "P_BESIDE", "BESIDE_M", "P_FAR_HAND", "P_AT_LIMITS"),
 )
-"""The parameters without a source: counts of disturbed tests say nothing about frequencies."""
+"""The parameters without a source; so counts of disturbed tests do not estimate frequencies."""
 
 
 def disturbed(count: int, seed: int) -> tuple[AbstractTest, ...]:
-    """Tests with a person who may do anything, on sensors and a scene that may fail.
+    """Tests with a person who may deviate at any step, and with sensors and a scene that may fail.
 
     >>> [len(test.actions) for test in disturbed(3, seed=1)]
     [11, 16, 12]

@@ -1,4 +1,4 @@
-"""Tests from the model: query → witness → template of the human's part → chosen times."""
+"""Tests from the model: a query's witness becomes a template of the human's part, then a test."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 REQUIREMENTS = ("R1", "R2", "R3", "R4")
-"""The queries whose witnesses become templates; R5 has none, for the model knows no distances."""
+"""The queries whose witnesses become templates; R5 has none, as the model has no distances."""
 
 PROJECTED = ("workflow", "gaze", "location", "pressure", "sensors")
 """The automata that are not the robot."""
 
 PATIENCE = 40
-"""Units of time by which a wait may exceed its least one.
+"""Units of time by which a wait may exceed its minimum.
 
-The longest waits of a witness need a robot that waits as long; two seconds are enough to vary.
+The robot would not wait for the longest waits that a witness allows; 2 s give enough variation.
 """
 
 _STRATEGIES: dict[PolicyName, Strategy] = {
@@ -60,12 +60,12 @@ ACTIONS: dict[Edge, Action] = {
 
 
 def model_based(_count: int, seed: int, policy: PolicyName = "likely") -> tuple[AbstractTest, ...]:
-    """One test for each of the seed's requirements that the model can express.
+    """One test for each of the seed paper's requirements that the model can express.
 
     Args:
-        _count: ignored, as there is one witness for each requirement.
-        seed: chooses the times within the witness's windows, and all that the world draws.
-        policy: the choice of the template among several witnesses.
+        _count: ignored, as there is one witness per requirement.
+        seed: determines the times within the limits of the witness, and everything random.
+        policy: how the witness is chosen among several.
 
     Source: Araiza-Illan et al. 2015, "Coverage-Driven Verification", section 3.3; Nielsen and
     Skou, Automated Test Generation from Timed Automata, 2003.
@@ -78,7 +78,7 @@ def model_based(_count: int, seed: int, policy: PolicyName = "likely") -> tuple[
 
 @cache
 def templates(policy: PolicyName = "likely") -> tuple[Template[Action], ...]:
-    """The templates of the requirements, from witnesses that the model checker chooses.
+    """The templates of the requirements, made from witnesses of the model checker.
 
     Raises:
         TestError: a query has no witness.
@@ -89,7 +89,7 @@ def templates(policy: PolicyName = "likely") -> tuple[Template[Action], ...]:
 
 
 def save_templates(strategies: Collection[str], folder: Path) -> None:
-    """Write the templates of those strategies that have some, each to a folder of its own."""
+    """Write the templates of each model-based strategy to a subfolder of its name."""
     for policy, strategy in _STRATEGIES.items():
         if strategy in strategies:
             own = folder / strategy
@@ -99,10 +99,10 @@ def save_templates(strategies: Collection[str], folder: Path) -> None:
 
 
 def instantiate(template: Template[Action], seed: int) -> AbstractTest:
-    """A test whose times were chosen within the limits of a template.
+    """A test with times drawn within the limits of a template.
 
     Raises:
-        TestError: no whole numbers of units satisfy the limits.
+        TestError: no times in whole units satisfy the limits.
     """
     rng = random.Random(f"model-based/{seed}/{template.name}")  # noqa: S311  # repeatable
     times = choose_times(template, rng, PATIENCE)
@@ -117,7 +117,7 @@ def instantiate(template: Template[Action], seed: int) -> AbstractTest:
 
 
 def _script(template: Template[Action], times: Sequence[int]) -> list[Action]:
-    """The script that does each action at its time, as far as the driver's delays allow."""
+    """The script that starts each action at its time, as far as the driver's delays allow."""
     script: list[Action] = []
     now = 0
     for step, time in zip(template.steps, times[1:], strict=True):
@@ -126,7 +126,7 @@ def _script(template: Template[Action], times: Sequence[int]) -> list[Action]:
         sends = isinstance(step.action, SendSignal)
         begin = time - (round(SEND_DELAY_S / template.unit_s) if sends else 0)
         if isinstance(step.action, ReceiveSignal):
-            now = time  # when the robot speaks is its own affair: the script waits as long
+            now = time  # the script waits until the robot sends, whenever that is
         elif begin > now:
             script.append(SetParam("time", begin - now))
             now = begin

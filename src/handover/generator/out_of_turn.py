@@ -1,6 +1,6 @@
-"""Tests of a human who knows the protocol and takes some steps too early or too late.
+"""Tests of a human who follows the protocol but takes some steps too early or too late.
 
-Sensors and scene may be disturbed as well, in ways that tests of the strategy `disturbed` have.
+Sensors and scene may be disturbed as well, as in tests of the strategy `disturbed`.
 """
 
 from __future__ import annotations
@@ -25,7 +25,8 @@ _TURNS = ("before activating", "after activating", "before being ready", "after 
 _POSTURES: tuple[Posture, ...] = get_args(Posture)
 
 _PAUSES = ((0, 20), (0, 20), (60, 180), (240, 258), (315, 385))
-"""Units of 0.05 s; the third is as long as the robot takes to come, the last nearly too long."""
+"""Ranges of pauses, in units of 0.05 s. The third range is about the time that the robot takes to
+come; the last is nearly too long."""
 
 _SENSORS = {
     "noisy": SensorFaults(noise_m=NOISE_M[1]),
@@ -46,7 +47,7 @@ _AFTERWARDS: dict[str, tuple[Action, ...]] = {
 
 
 def out_of_turn(choose: Choose, seed: int) -> AbstractTest:
-    """A test with an order of steps, postures and pauses as they are chosen; the seed has the rest.
+    """A test whose order of steps, postures and pauses are chosen; the seed determines the rest.
 
     >>> test = out_of_turn(lambda _name, options: options[0], seed=1)
     >>> [action.param for action in test.actions[:3]]
@@ -86,5 +87,5 @@ def out_of_turn(choose: Choose, seed: int) -> AbstractTest:
 
 
 def _mostly_sound(faults: Collection[str]) -> Sequence[str]:
-    """Faults; none in half of the tests."""
+    """Options for a choice among faults, half of which are no fault."""
     return (*faults, *["sound"] * len(faults))

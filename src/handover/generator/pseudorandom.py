@@ -1,4 +1,4 @@
-"""Tests made by chance: pseudorandom sequences, and those constrained to follow the protocol."""
+"""Random tests: sequences of any actions, and sequences constrained to start by the protocol."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from handover.generator.abstract_test import (
 )
 
 LENGTH = (4, 15)
-"""Actions of a pseudorandom test, uniform."""
+"""Number of actions of a pseudorandom test, uniform."""
 
 TAIL_LENGTH = (1, 10)
-"""Random actions after the prefix of a constrained test, uniform."""
+"""Number of random actions after the prefix of a constrained test, uniform."""
 
 TIME = (1, 100)
-"""Units of 0.05 s of a wait, uniform."""
+"""Duration of a wait in units of 0.05 s, uniform."""
 
 PREFIX: tuple[Action, ...] = (
     SendSignal("activateRobot"),
@@ -33,7 +33,7 @@ PREFIX: tuple[Action, ...] = (
     SetParam("time", 10),
     SendSignal("setv"),
 )
-"""The protocol up to the human's readiness, which every constrained test begins with."""
+"""The protocol up to the human's readiness, with which every constrained test starts."""
 
 _HUMAN_SIGNALS: tuple[HumanSignal, ...] = get_args(HumanSignal)
 _ROBOT_SIGNALS: tuple[RobotSignal, ...] = get_args(RobotSignal)
@@ -44,7 +44,7 @@ def pseudorandom(count: int, seed: int) -> tuple[AbstractTest, ...]:
     """Tests of uniformly random actions, whether or not they make sense together.
 
     Source: Araiza-Illan et al. 2015, "Coverage-Driven Verification", section 3.3; lengths and
-    alphabet as in its public testbench.
+    actions as in its public testbench.
 
     >>> [len(test.actions) for test in pseudorandom(3, seed=1)]
     [11, 11, 5]
@@ -53,7 +53,7 @@ def pseudorandom(count: int, seed: int) -> tuple[AbstractTest, ...]:
 
 
 def constrained(count: int, seed: int) -> tuple[AbstractTest, ...]:
-    """Tests that activate the robot and get ready by the protocol, then act at random.
+    """Tests in which the human follows the protocol up to being ready, then acts at random.
 
     Source: as `pseudorandom`.
 

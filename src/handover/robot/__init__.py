@@ -1,1 +1,1 @@
-"""The code under test: the robot's side of the handover, written as for a real robot."""
+"""The code under test: the robot's side of the handover, written like code of a real robot."""

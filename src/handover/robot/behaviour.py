@@ -17,22 +17,22 @@ class Behaviour:
     activation: frozenset[str]  # signals that activate the robot
     readiness: frozenset[str]  # signals that say that the human is ready
     only_fresh: bool  # whether signals from before the state was entered are ignored
-    # whether it closes the gripper only where no hand is seen, and stops on its way where a person
-    # is
+    # Whether it refuses to close the gripper where a hand is seen, and stops the arm where a person
+    # is close.
     minds_hand: bool
-    grip_pause_s: float  # seconds from the command to close until the gripper counts as closed
+    grip_pause_s: float  # seconds from the command to close until the gripper is taken as closed
     announce_pause_s: float  # seconds between the messages about the closed gripper
     settle_s: float  # seconds at the handover pose before the human is informed
-    checks_grip: bool  # whether it looks whether the piece came along
+    checks_grip: bool  # whether it checks that the piece came along
     inform_pause_s: float  # seconds before and after informing the human
     sense_delay_s: float  # seconds in `sense` before the first poll of the sensors
     sense_poll_s: float  # seconds between two reads of the sensors
-    # seconds in `sense` until it times out; `None`: the run's parameter `timeout_time`, counted
-    # from the informing
+    # Seconds in `sense` until it times out; `None`: the run's parameter `timeout_time`, counted
+    # from the instant at which the human was informed.
     sense_limit_s: float | None
-    undefined_is_bad: bool  # whether a sensor without a reading counts as not ok, at once
+    undefined_is_bad: bool  # whether a sensor without a reading is taken as not ok, at once
     decide_s: float  # seconds from sensing to the decision
-    open_s: float  # seconds from the command to open until the piece counts as released
+    open_s: float  # seconds from the command to open until the piece is taken as released
     release_s: float  # seconds after the release
 
 

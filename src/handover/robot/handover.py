@@ -1,7 +1,7 @@
 """The handover task as a state machine of nine states.
 
-Signals come in over the node and the sensors, commands go out to arm and gripper. The program
-is a generator: it waits by yielding seconds, and whoever runs it resumes it when they are over.
+Input comes from the node and the sensors, and commands go to arm and gripper. The program is a
+generator: it waits by yielding seconds, and its runner resumes it once they have passed.
 
 ::
 
@@ -51,11 +51,11 @@ class HandoverRobot:
         arm: plans and follows paths.
         gripper: opens and closes.
         sensors: camera, trackers, pressure.
-        behaviour: the version's numbers and rules.
+        behaviour: numbers and rules of this version.
 
     Attributes:
-        state: the state that the robot is in.
-        reading: of the sensors, what it decides by, once it has sensed.
+        state: the current state.
+        reading: the reading of the sensors that it decides by, once it has sensed.
     """
 
     def __init__(
@@ -88,10 +88,10 @@ class HandoverRobot:
             self.node.publish("robot_state", next_state)
             next_state = yield from getattr(self, next_state)()
 
-    # --- states: each returns the name of the next -------------------------------------------
+    # --- states: each method returns the name of the next state ------------------------------
 
     def reset(self) -> Steps[str]:
-        """Forget the last task, open the gripper and go to the start pose."""
+        """Reset the task, open the gripper and go to the start pose."""
         self.polls = 0
         self.informed_at = 0.0
         self.node.publish("robot_reset")
@@ -203,7 +203,7 @@ class HandoverRobot:
         return "done"
 
     def release(self) -> Steps[str]:
-        """Let the piece go and give the human time to take it away."""
+        """Let go of the piece and give the human time to take it away."""
         self.gripper.open()
         yield self.behaviour.open_s
         self.node.publish("pressure_e1", False)
@@ -218,10 +218,10 @@ class HandoverRobot:
         yield 0.0
         return END
 
-    # --- parts of states ---------------------------------------------------------------------
+    # --- helpers -----------------------------------------------------------------------------
 
     def poll_signal(self) -> Steps[str | None]:
-        """Wait for one poll period and read the human's signal, if there is one."""
+        """Wait for a poll period, then read the human's signal; `None` if there is none."""
         if self.behaviour.resubscribes:
             self.node.subscribe(HUMAN_SIGNALS)
         yield self.behaviour.poll_s
@@ -234,7 +234,7 @@ class HandoverRobot:
         return str(message.value)
 
     def give_up(self, reason: str) -> str:
-        """End the task without a decision, and tell why."""
+        """End the task without a decision, and publish the reason."""
         if self.is_stopped:
             reason = "person_in_way"
         self.node.publish(reason)
@@ -242,7 +242,7 @@ class HandoverRobot:
         return "done"
 
     def has_piece(self) -> bool:
-        """Whether the piece is seen where the gripper holds it out."""
+        """Whether the piece is seen where the gripper should hold it."""
         found = self.sensors.piece()
         x, z = HANDOVER_POINT
         return (
@@ -251,12 +251,12 @@ class HandoverRobot:
         )
 
     def hand_is_close(self) -> bool:
-        """Whether a hand is seen so near that the gripper would close on it."""
+        """Whether a hand is seen so close that the gripper would close on it."""
         distance = self.sensors.hand_distance()
         return distance is not None and distance < HAND_CLEARANCE
 
     def go_to(self, x: float, z: float) -> Steps[bool]:
-        """Plan a path of the grip to a point and follow it; tell whether it got there."""
+        """Plan a path of the grip to a point and follow it; return whether the arm got there."""
         for _ in range(PLAN_ATTEMPTS):
             path = yield from self.arm.plan(x, z)
             if path is not None:

@@ -1,4 +1,4 @@
-"""Robots with one known fault each, which a testbench has to find."""
+"""Robots with one planted fault each, which a testbench must find."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ FAR_OUT_S = 4.0
 
 
 class MindsNoHand(HandoverRobot):
-    """Closes the gripper wherever a hand is."""
+    """Closes the gripper even if a hand is in it."""
 
     def hand_is_close(self) -> bool:
-        """See no hand."""
+        """Never see a hand."""
         return False
 
 
 class ReleasesAnyway(HandoverRobot):
-    """Decides without looking at the sensors."""
+    """Releases regardless of the sensors."""
 
     def decide(self) -> Steps[str]:
-        """Decide as always, then release whatever was decided."""
+        """Decide as usual, then release regardless of the decision."""
         yield from super().decide()
         return "release"
 
 
 class IgnoresPressure(HandoverRobot):
-    """Takes gaze and location for enough."""
+    """Decides by gaze and location only."""
 
     def decide(self) -> Steps[str]:
-        """Release if gaze and location are all right."""
+        """Release if gaze and location are good."""
         next_state = yield from super().decide()
         reading = self.reading
         return "release" if reading.gaze and reading.location else next_state
@@ -59,10 +59,10 @@ class ReleasesLate(HandoverRobot):
 
 
 class NeverDecides(HandoverRobot):
-    """Waits for a better reading for ever."""
+    """Senses for ever."""
 
     def sense(self) -> Steps[str]:
-        """Look at the sensors and never be content."""
+        """Read the sensors and ignore the reading."""
         yield self.behaviour.sense_poll_s
         self.sensors.sense()
         return "sense"
@@ -79,19 +79,19 @@ class WaitsForEver(HandoverRobot):
 
 
 class EndsSilently(HandoverRobot):
-    """Gives up without telling anybody."""
+    """Ends without publishing anything."""
 
     def receive_activation(self) -> Steps[str]:
-        """Wait for a single poll and leave."""
+        """Wait for a single poll period and end."""
         yield self.behaviour.poll_s
         return END
 
 
 class DropsWhatItWithholds(HandoverRobot):
-    """Decides to keep the piece, and opens the gripper."""
+    """Opens the gripper although it decides to keep the piece."""
 
     def decide(self) -> Steps[str]:
-        """Open the gripper all the same."""
+        """Decide as usual, and open the gripper if the piece should be withheld."""
         next_state = yield from super().decide()
         if next_state == "done":
             self.gripper.open()
@@ -99,19 +99,19 @@ class DropsWhatItWithholds(HandoverRobot):
 
 
 class Hurries(HandoverRobot):
-    """Goes to its start pose a hundredth faster than it may near a person."""
+    """Moves to its start pose a hundredth faster than is allowed near a person."""
 
     def reset(self) -> Steps[str]:
-        """Take less time for it."""
+        """Reset in less time."""
         self.behaviour = replace(self.behaviour, reset_s=1.6)
         return (yield from super().reset())
 
 
 class SwingsBlindly(HandoverRobot):
-    """Swings the piece out to a fixed posture first, without regard to people in the way."""
+    """Swings the piece to a fixed pose first, without regard to people in the way."""
 
     def go_to(self, x: float, z: float) -> Steps[bool]:
-        """Reach far out before the handover point, without a plan."""
+        """Before the handover point, reach far out without planning."""
         if (x, z) == HANDOVER_POINT:
             yield from self.arm.follow(self.arm.interpolate(FAR_OUT, FAR_OUT_S))
         return (yield from super().go_to(x, z))

@@ -1,4 +1,4 @@
-"""The ports of the robot's code: a bus, an arm, a gripper, sensors."""
+"""The ports of the robot's code: bus, arm, gripper and sensors."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, Protocol, TypeVar
 
 Result = TypeVar("Result")
 Steps = Generator[float, None, Result]
-"""A blocking call: it waits by yielding seconds, and returns a result in the end."""
+"""A blocking call: it waits by yielding seconds, and finally returns a result."""
 
 Path = TypeVar("Path")
 """A path made by the arm's planner, which the arm follows."""
@@ -37,7 +37,7 @@ class Node(Protocol):
         """Seconds since the start."""
 
     def publish(self, topic: str, value: Value = None, *, latched: bool = False) -> None:
-        """Publish a message; a latched one can be read later, too."""
+        """Publish a message; a latched one can also be read later."""
 
     def subscribe(self, topic: str) -> None:
         """Subscribe to a topic."""
@@ -52,32 +52,32 @@ class Arm(Protocol[Path]):
     def plan(self, x: float, z: float) -> Steps[Path | None]:
         """Find a path of the grip to a point (metres), gripper down and clear of people.
 
-        `None`: there is none.
+        The result is `None` if there is no path.
         """
 
     def interpolate(self, joints: tuple[float, float, float], duration: float) -> Path:
         """Make a path to joint angles (rad) of the given duration (s)."""
 
     def follow(self, path: Path, *, minds_people: bool = False) -> Steps[bool]:
-        """Move along a path; returns when it is over, and whether the arm got to its end.
+        """Move along a path, and return at its end whether the arm got there.
 
-        It stops where a person comes close, if it minds people.
+        With `minds_people` the arm stops where a person comes close.
         """
 
 
 class Gripper(Protocol):
-    """Opens and closes; both return at once."""
+    """Opens and closes; both calls return at once."""
 
     def open(self) -> None:
-        """Begin to open."""
+        """Start to open."""
 
     def close(self) -> None:
-        """Begin to close, and go on pressing."""
+        """Start to close, and keep pressing."""
 
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """A reading of the sensors; `None`: no reading of this sensor yet."""
+    """A reading of the sensors; `None` if a sensor has no reading."""
 
     gaze: bool | None  # whether the human looks at the piece
     pressure: bool | None  # whether robot and human both hold the piece
@@ -88,10 +88,10 @@ class Sensors(Protocol):
     """The camera, the trackers of the human, and the pressure at the fingers."""
 
     def piece(self) -> tuple[float, float] | None:
-        """The position of the piece, metres; `None`: not in sight."""
+        """The position (x, z) of the piece, metres; `None`: not in sight."""
 
     def hand_distance(self) -> float | None:
-        """The distance of the hand from the gripper, metres; `None`: not known."""
+        """The distance of the hand from the gripper, metres; `None`: unknown."""
 
     def sense(self) -> Reading:
         """Read gaze, pressure and location."""

@@ -1,1 +1,1 @@
-"""The simulated world: scene, arm, human body, sensing, message bus and the loop of time."""
+"""The simulated world: scene, arm, human body, sensors, message bus and simulated time."""

@@ -1,4 +1,4 @@
-"""The arm and the gripper as a robot commands them: plan, follow, open, close."""
+"""The arm and the gripper with their commands: plan, follow, open, close."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from handover.world.scene import Scene
 
 @dataclass(slots=True)
 class Arm:
-    """Plans and follows paths; its motors are written only when their command changes."""
+    """Plans and follows paths; it writes to its motors only when their command changes."""
 
-    scene: Scene  # of the motors
-    rng: random.Random  # draws the planner's latency
+    scene: Scene  # with the motors
+    rng: random.Random  # draws the planner's latency and its failures
     wake: Callable[[float], None]  # called with the seconds for which the scene is going to move
-    note: Callable[[str], None]  # called with the name of each command, and of each plan in vain
-    plan_failure: float = 0.0  # probability that there is no path, though the place is in reach
+    note: Callable[[str], None]  # called with the name of each command and of each failed plan
+    plan_failure: float = 0.0  # probability that no path is found although the point is in reach
     _goal: Joints = field(init=False)
     _path: Trajectory | None = field(default=None, init=False)
     _path_s: float = field(default=0.0, init=False)
@@ -34,18 +34,18 @@ class Arm:
         self._goal = self.joints()
 
     def joints(self) -> Joints:
-        """The joint angles as they are, rad."""
+        """The current joint angles, rad."""
         upper, fore, palm = self.scene.links
         first, second, third = upper.angle, fore.angle, palm.angle
         return first, second - first, third - second
 
     def plan(self, x: float, z: float) -> Generator[float, None, Trajectory | None]:
-        """Find a path for the grip to a point, gripper down and clear of who stands beside it.
+        """Find a path of the grip to a point (metres), gripper down and clear of people.
 
-        It takes the planner's time.
+        It takes the planner's latency.
 
         Returns:
-            `None` if there is no path.
+            The path, or `None` if there is none.
         """
         yield self.rng.uniform(*p.PLAN_LATENCY_S)
         goal = joints_for(x, z)
@@ -56,16 +56,18 @@ class Arm:
         return path
 
     def interpolate(self, joints: Joints, duration: float) -> Trajectory:
-        """A path to joint angles, in a given time and without planning."""
+        """A path to joint angles (rad) with a given duration (s), without planning."""
         return Trajectory(self._start(), joints, duration)
 
     def follow(
         self, path: Trajectory, *, minds_people: bool = False
     ) -> Generator[float, None, bool]:
-        """Move along a path to its end; if it minds people, it stops for good where one is close.
+        """Move along a path; with `minds_people`, stop for good where a person is close.
+
+        It returns after the duration of the path in any case.
 
         Returns:
-            Whether the arm got to its end.
+            Whether the arm got to the end of the path.
         """
         self._path, self._path_s = path, 0.0
         self._goal = path.goal
@@ -103,7 +105,7 @@ class Arm:
                 motor.rate = rate
 
     def _start(self) -> Joints:
-        """The last goal of the arm, or its present joints while it is still on its way."""
+        """The last goal of the arm, or its current joint angles while it is still moving."""
         return self._goal if self._path is None else self.joints()
 
     def _path_to(self, goal: Joints) -> Trajectory | None:
@@ -118,7 +120,7 @@ class Arm:
 
 
 class Gripper:
-    """Two fingers that turn with a limited torque until something or their stop holds them."""
+    """Two fingers that turn with limited torque until an object or their stop holds them."""
 
     def __init__(
         self, scene: Scene, wake: Callable[[float], None], note: Callable[[str], None]
@@ -130,17 +132,17 @@ class Gripper:
         self._travel_s = (p.FINGER_OPEN - p.FINGER_OVERCLOSED) / p.FINGER_SPEED
 
     def open(self) -> None:
-        """Begin to open both fingers."""
+        """Start to open both fingers."""
         self._note("open_commanded")
         self._turn(-p.FINGER_SPEED)
 
     def close(self) -> None:
-        """Begin to close both fingers; they go on pressing."""
+        """Start to close both fingers, which keep pressing."""
         self._note("close_commanded")
         self._turn(p.FINGER_SPEED)
 
     def control(self) -> None:
-        """Stop a finger at its stop: a motor that went on pressing would jerk the arm."""
+        """Stop the motor of a finger at its stop, as it would jerk the arm if it kept pressing."""
         if not any(self._rates):
             return
         palm = self._scene.links[2].angle

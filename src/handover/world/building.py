@@ -1,4 +1,4 @@
-"""Builds the physical scene: arm, gripper, piece, table and human."""
+"""Build the physical scene: arm, gripper, piece, table and human."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ _FINGER_OFFSET = (p.PIECE_SIZE[0] + p.FINGER_THICKNESS) / 2
 
 
 def build(pose: Joints, faults: SceneFaults = AS_PLANNED) -> Scene:
-    """Make the scene with the arm in a pose, the piece on the table and the human at rest.
+    """Build the scene with the arm in a pose, the piece on the table and the human at rest.
 
-    Collisions: the piece with everything; gripper and hand also with table and floor. Hand and
-    gripper pass each other, since the plane is a projection and the hand may be in front (how
-    close they come is what requirement 5 measures), unless the faults have the hand in the
-    plane. Forearm and other hand of a person beside the way meet gripper, piece and table.
-    The arm's links touch nothing.
+    The piece collides with everything; gripper and hand also collide with table and floor. Hand and
+    gripper pass each other, as the plane is a projection and the hand may be in front (requirement
+    5 measures how close they come), unless the faults put the hand into the plane. Forearm and
+    other hand of a person beside the way collide with gripper, piece and table. The links of the
+    arm collide with nothing.
     """
     space = pymunk.Space()
     space.gravity = (0.0, -p.GRAVITY)
@@ -86,7 +86,7 @@ def table_corners() -> tuple[tuple[float, float], ...]:
 
 
 def box_corners(length: float, width: float) -> tuple[tuple[float, float], ...]:
-    """The outline of a body around its centre, metres."""
+    """The outline of a box around its centre, metres."""
     x, z = length / 2, width / 2
     return (-x, -z), (x, -z), (x, z), (-x, z)
 
@@ -210,7 +210,7 @@ def _pulled(
 
 
 def _add_arms(space: pymunk.Space, hand: pymunk.Body, own_x: float, other_x: float) -> Arms:
-    """Forearm and other hand. The shoulder carries the forearm, so that it weighs nothing."""
+    """Add forearm and other hand. The forearm has no weight, as the shoulder carries it."""
     wrist, elbow = p.LOWER_ARM
     elbow_rest = _from(own_x, p.BESIDE_ELBOW)
     size = (elbow - wrist, 2 * p.LOWER_ARM_RADIUS)

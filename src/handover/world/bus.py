@@ -11,15 +11,15 @@ from handover.world.parameters import LATCH_LINGER_S, NS
 
 
 class Schedule:
-    """Calls in order of time; calls of one instant in the order in which they were added."""
+    """A queue of calls in order of time; calls at one instant keep the order of being added."""
 
     def __init__(self) -> None:
-        self.now_ns = 0  # the instant of the call that is running
+        self.now_ns = 0  # the instant of the current call
         self._queue: list[tuple[int, int, Callable[[], None]]] = []
         self._entered = 0
 
     def at(self, t_ns: int, call: Callable[[], None]) -> None:
-        """Add a call at an instant, now or later."""
+        """Schedule a call at an instant, now or later."""
         heapq.heappush(self._queue, (t_ns, self._entered, call))
         self._entered += 1
 
@@ -39,7 +39,7 @@ _LINGER_NS = round(LATCH_LINGER_S * NS)
 
 
 class Bus:
-    """Carries messages between nodes; every message passes the taps at its instant."""
+    """Carries messages between nodes, and passes each message to the taps when it is published."""
 
     def __init__(self, schedule: Schedule) -> None:
         self.schedule = schedule
@@ -47,11 +47,11 @@ class Bus:
         self._taps: list[Tap] = []
 
     def tap(self, tap: Tap) -> None:
-        """Call `tap(topic, value)` with every message from now on."""
+        """Call `tap(topic, value)` for every message from now on."""
         self._taps.append(tap)
 
     def publish(self, publisher: Node, topic: str, value: Value, *, latched: bool) -> None:
-        """Carry one message; a latched one replaces the topic's latched message."""
+        """Publish a message; a latched one replaces the topic's latched message."""
         if latched:
             stamp = self.schedule.now_ns / NS
             self._latched[topic] = (publisher, Message(value, stamp))
@@ -59,7 +59,7 @@ class Bus:
             tap(topic, value)
 
     def latched(self, topic: str) -> Message | None:
-        """The topic's latched message while its publisher can still hand it out."""
+        """The topic's latched message, while its publisher is still available."""
         entry = self._latched.get(topic)
         if entry is None:
             return None
@@ -70,7 +70,7 @@ class Bus:
 
 
 class Node:
-    """One process on the bus: publishes, subscribes, reads, and ends."""
+    """A process on the bus, which publishes, subscribes, reads, and ends."""
 
     def __init__(self, bus: Bus, params: Mapping[str, Any], poll_growth_s: float) -> None:
         self.params = params  # its parameters from the launch file
@@ -85,15 +85,15 @@ class Node:
         return self._bus.schedule.now_ns / NS
 
     def publish(self, topic: str, value: Value = None, *, latched: bool = False) -> None:
-        """Publish a message; a latched one can be read while this node lives."""
+        """Publish a message; a latched one can be read as long as this node lives."""
         self._bus.publish(self, topic, value, latched=latched)
 
     def subscribe(self, topic: str) -> None:
-        """Subscribe once more; subscriptions that pile up slow every read of the topic down."""
+        """Subscribe once more; each further subscription slows down all reads of the topic."""
         self._subscriptions[topic] = self._subscriptions.get(topic, 0) + 1
 
     def receive(self, topic: str) -> Message | None:
-        """The topic's latched message, if this node subscribed and the publisher still lives."""
+        """The topic's latched message, if this node has subscribed and the publisher lives."""
         count = self._subscriptions.get(topic, 0)
         if count == 0:
             return None
@@ -101,10 +101,10 @@ class Node:
         return self._bus.latched(topic)
 
     def take_delay_s(self) -> float:
-        """The seconds by which reads have slowed this node down since the last call."""
+        """The seconds by which reads have slowed down this node since the last call."""
         delay, self._delay_s = self._delay_s, 0.0
         return delay
 
     def end(self) -> None:
-        """End the process; its latched messages soon vanish."""
+        """End the process; its latched messages disappear after `LATCH_LINGER_S`."""
         self.ended_ns = self._bus.schedule.now_ns

@@ -1,4 +1,4 @@
-"""Keeps the scene over time, for an animation."""
+"""Record the scene over time, for an animation."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from rvmon.report import tracks as shown
 
 BODIES = ("upper_arm", "forearm", "palm", "left_finger", "right_finger", "piece", "hand", "head")
 BESIDE = ("lower_arm", "other_hand")
-"""The further bodies of a person beside the robot's way."""
+"""Additional bodies of a person beside the robot's way."""
 
 VIEW = (-0.62, -0.1, 1.18, 0.95)
-"""Metres: from behind the robot's shoulder to behind the human's head, the table below."""
+"""The visible area, metres: from behind the robot's shoulder to behind the human's head."""
 
 GAZE_LENGTH = 0.55
 GAZE_HALF_ANGLE = math.radians(12)
 
 
 class Film:
-    """Takes frames of a scene."""
+    """Records frames of a scene."""
 
     def __init__(self, scene: Scene) -> None:
         # In the order of `BODIES` and `BESIDE`.
@@ -31,7 +31,7 @@ class Film:
         self._frames: list[tuple[int, tuple[float, ...]]] = []
 
     def take(self, t_ns: int) -> None:
-        """Take a frame now, rounded to 0.1 mm and 0.1 mrad."""
+        """Record a frame, rounded to 0.1 mm and 0.1 mrad."""
         frame: list[float] = []
         for body in self._bodies:
             x, z = body.position

@@ -14,12 +14,12 @@ from handover.world.motion import PEAK_OVER_MEAN, Quintic, evaluate, quintic, sl
 from handover.world.scene import Scene
 
 _HAND = 1
-"""The type of collision in pymunk of hands and forearm; all other shapes have 0."""
+"""The collision type of hands and forearm in pymunk; all other shapes have 0."""
 
 
 @dataclass(slots=True)
 class _Reach:
-    """A motion under way or still to begin, along one quintic path for each coordinate."""
+    """A motion along a quintic path for each coordinate."""
 
     goal: tuple[float, ...]
     duration: float
@@ -28,7 +28,7 @@ class _Reach:
 
 
 class Limb:
-    """A kinematic body that moves on minimum-jerk paths and can be redirected in flight.
+    """A kinematic body that moves on minimum-jerk paths and can be redirected at any time.
 
     Args:
         body: the moving body.
@@ -41,7 +41,7 @@ class Limb:
         self._turns = turns
 
     def start(self, goal: tuple[float, ...]) -> float:
-        """Begin to move from the present place to a goal; returns the duration in seconds."""
+        """Start to move from the current place to a goal, and return the duration in seconds."""
         here = self._place()
         speed = self._speed()
         brisk = PEAK_OVER_MEAN * math.dist(here[:2], goal[:2]) / p.REACH_SPEED
@@ -83,7 +83,7 @@ class Limb:
 
 
 class Grasp:
-    """Holds from its making until `let_go`; the piece keeps its place in the hand."""
+    """A hold of the hand on the piece, from its construction until `let_go`."""
 
     def __init__(self, scene: Scene) -> None:
         hand, piece = scene.hand, scene.piece
@@ -98,11 +98,11 @@ class Grasp:
         scene.hand_pull.max_force = p.HOLD_FORCE
 
     def force(self) -> float:
-        """N that hand and piece exchanged in the last step."""
+        """The force (N) between hand and piece in the last physics step."""
         return self._pivot.impulse / (p.STEP_NS / p.NS)
 
     def has_slipped(self) -> bool:
-        """Whether the hand was torn away from where it took hold."""
+        """Whether the hand was torn away from the place at which it took hold."""
         held = self._scene.piece.local_to_world(self._held_at)
         return (held - self._scene.hand.position).length > p.GRASP_SLIP
 
@@ -118,7 +118,7 @@ class Human:
     Args:
         scene: the scene of the bodies.
         wake: called with the seconds for which something is going to move.
-        after: calls a function so many seconds later.
+        after: calls a function after some seconds.
     """
 
     def __init__(
@@ -127,7 +127,7 @@ class Human:
         wake: Callable[[float], None],
         after: Callable[[float, Callable[[], None]], None],
     ) -> None:
-        self.hand_is_slack = True  # whether the hand is neither opened nor closed for the piece
+        self.hand_is_slack = True  # while the human intends neither to close nor to open it
         self._scene = scene
         self._wake = wake
         self._after = after
@@ -156,12 +156,12 @@ class Human:
         self._after(p.REACTION_S, lambda: self._start_to_look(offset, distance, angle))
 
     def reach(self, dx: float, dz: float, *, near: bool) -> None:
-        """Intend to have the hand beside the piece.
+        """Intend to put the hand beside the piece.
 
         Args:
             dx: m from the piece, towards the human.
             dz: m above the piece.
-            near: this is a place from which the piece can be taken.
+            near: whether the piece can be taken from this place.
         """
         self._after(p.REACTION_S, lambda: self._start_to_reach((dx, dz), near=near))
 
@@ -170,11 +170,11 @@ class Human:
         self._after(p.REACTION_S, lambda: self._start_to_grasp(closed=closed))
 
     def withdraw(self) -> None:
-        """Intend to lose interest: look away, and have the hand back at the chest."""
+        """Lose interest: intend to look away and to take the hand back to the chest."""
         self._after(p.REACTION_S, self._start_to_withdraw)
 
     def control(self) -> None:
-        """Move head and arm on; take hold where the closed hand touches the piece."""
+        """Move head and arm by a control step; take hold if the closed hand touches the piece."""
         self._head.control()
         self._arm.control()
         self._move_elbow()
@@ -185,21 +185,21 @@ class Human:
             self._grasp = Grasp(self._scene)
 
     def is_moving(self) -> tuple[bool, bool]:
-        """Whether head and hand are moving, so that trackers give no reading."""
+        """Whether the head and the hand are moving, so that trackers give no reading."""
         hand = self._arm.is_moving() or self._scene.hand.velocity.length > p.STILL_SPEED
         return self._head.is_moving(), hand
 
     def hand_force(self) -> float:
-        """N with which one body presses on the hand, the most of the robot's and the piece.
+        """The largest force (N) with which a single body of the robot, or the piece, presses.
 
-        Fingers that clamp it press from both sides, each as hard as the other: that is no more.
+        Forces of two fingers that clamp the hand do not add up: each balances the other.
         """
         if not self._touches and self._grasp is None:
             return 0.0
         return self._pressed(self._scene.hand, self._grasp_force())
 
     def arm_forces(self) -> tuple[float, float]:
-        """The same for forearm and other hand of a person who stands beside the way."""
+        """The same for forearm and other hand of a person beside the robot's way."""
         arms = self._scene.arms
         if not self._touches or arms is None:
             return 0.0, 0.0
@@ -210,7 +210,7 @@ class Human:
         return self._grasp is not None
 
     def shares_piece(self) -> bool:
-        """Whether robot and human both hold the piece, by the forces between them and it."""
+        """Whether robot and human both hold the piece, judged by their forces on it."""
         enough = self._grasp_force() + self._touch_force() >= p.PRESSURE_MIN
         return enough and gripper_force(self._scene) >= p.PRESSURE_MIN
 
@@ -221,7 +221,7 @@ class Human:
         self._touches -= 1
 
     def _forces(self, body: pymunk.Body) -> dict[pymunk.Body, float]:
-        # Asked at each step of the physics: most of the time nothing touches the person.
+        # Called at each physics step, and most of the time nothing touches the person.
         return contact_forces(body) if self._touches else {}
 
     def _pressed(self, body: pymunk.Body, by_grasp: float = 0.0) -> float:
@@ -269,7 +269,7 @@ class Human:
             self._wake(self._arm.start(goal))
 
     def _move_elbow(self) -> None:
-        """Pull the elbow behind the hand, towards where it is when the arm hangs."""
+        """Pull the elbow behind the hand, in the direction of its place when the arm hangs."""
         arms, target = self._scene.arms, self._scene.hand_target
         if arms is not None:
             hand = target.position + target.velocity * p.CONTROL_S
@@ -288,7 +288,7 @@ class Human:
         return (x, max(z, p.HAND_RADIUS)) if above_table else (x, z)
 
     def _hold_point(self) -> tuple[float, float]:
-        """People lift a thing from a table by its top, and take a held one by its free end."""
+        """The point at which the hand takes the piece: its top if it stands, else its free end."""
         x, z = seen_piece(self._scene)
         width, height = p.PIECE_SIZE
         reach = p.HAND_RADIUS - p.GRASP_DEPTH

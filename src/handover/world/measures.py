@@ -1,4 +1,4 @@
-"""Plain measurements on the bodies of the scene."""
+"""Measurements on the bodies of the scene."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from handover.world import parameters as p
 from handover.world.scene import Scene
 
 _BETWEEN_PADS = (p.WRIST_TO_GRIP - p.PALM_LENGTH / 2, 0.0)
-"""On the palm, from its centre, metres."""
+"""The point between the pads, relative to the centre of the palm, metres."""
 
 
 def contact_forces(body: pymunk.Body) -> dict[pymunk.Body, float]:
-    """N between a body and each that touches it, in the last physics step, by contact alone.
+    """The contact force (N) between a body and each body touching it, in the last physics step.
 
-    Two may touch at several places: these forces add up as vectors.
+    The forces at several contact points of two bodies add up as vectors.
     """
     impulses: dict[pymunk.Body, pymunk.Vec2d] = {}
 
@@ -38,17 +38,17 @@ def seen_piece(scene: Scene) -> tuple[float, float]:
 
 
 def exactly() -> float:
-    """The error of a measurement that has none."""
+    """The error of an exact measurement."""
     return 0.0
 
 
 def gaze_is_ok(scene: Scene, error: Callable[[], float] = exactly) -> bool:
     """Whether the head is close to the piece and turned towards it.
 
-    Offset is the head's height over the piece, distance is along x, and the angle is that
-    between the line of sight and the direction from head to piece.
+    It is if three values are within their limits: the height of the head above the piece, their
+    distance along x, and the angle between the line of sight and the direction to the piece.
 
-    `error` gives the offset of each measured length, m.
+    `error` draws the error of each measured length, m.
     """
     head, piece = scene.head.position, scene.piece.position
     return (
@@ -59,17 +59,17 @@ def gaze_is_ok(scene: Scene, error: Callable[[], float] = exactly) -> bool:
 
 
 def face_is_seen(scene: Scene) -> bool:
-    """Whether the head is turned to the piece so far that a tracker finds its eyes."""
+    """Whether the head is turned towards the piece enough for a tracker to find its eyes."""
     return _turn_from_piece(scene) < p.FACE_MAX_ANGLE
 
 
 def hand_is_seen(scene: Scene) -> bool:
-    """Whether a tracker can tell the hand from the chest."""
+    """Whether a tracker can distinguish the hand from the chest."""
     return (scene.hand.position - scene.hand_rest).length > p.HAND_MIN_OFFSET
 
 
 def _turn_from_piece(scene: Scene) -> float:
-    """Degrees between the line of sight and the direction from head to piece."""
+    """The angle (degrees) between the line of sight and the direction from head to piece."""
     head, piece = scene.head.position, scene.piece.position
     towards = math.atan2(piece.y - head.y, piece.x - head.x)
     turn = (scene.head.angle - towards + math.pi) % math.tau - math.pi
@@ -77,7 +77,7 @@ def _turn_from_piece(scene: Scene) -> float:
 
 
 def location_is_ok(scene: Scene, error: Callable[[], float] = exactly) -> bool:
-    """Whether the hand is near the piece on both axes; arguments as of `gaze_is_ok`."""
+    """Whether the hand is near the piece on both axes; arguments as for `gaze_is_ok`."""
     hand, piece = scene.hand.position, scene.piece.position
     return (
         abs(hand.x - piece.x + error()) <= p.LOCATION_MAX
@@ -86,26 +86,26 @@ def location_is_ok(scene: Scene, error: Callable[[], float] = exactly) -> bool:
 
 
 def gripper_force(scene: Scene) -> float:
-    """N with which the weaker of both fingers presses on the piece."""
+    """The force (N) with which the weaker of both fingers presses on the piece."""
     forces = contact_forces(scene.piece)
     return min(forces.get(finger, 0.0) for finger in scene.fingers)
 
 
 def gripper_opening(scene: Scene) -> float:
-    """Metres between the tips of the fingers, at their middle lines."""
+    """The distance (m) between the tips of the fingers, at their centre lines."""
     tips = [finger.local_to_world((p.FINGER_LENGTH / 2, 0.0)) for finger in scene.fingers]
     return float((tips[0] - tips[1]).length)
 
 
 def hand_offset(scene: Scene) -> tuple[float, float]:
-    """Metres between the mass centres of gripper and nearest hand on each axis, without sign."""
+    """The distance (m) on each axis between the mass centres of gripper and nearest hand."""
     return _hand_offset(scene, gripper_centre(scene))
 
 
 def person_distances(scene: Scene) -> tuple[float, float]:
-    """Metres from the gripper's mass centre to the nearest hand, and to the nearest body part.
+    """The distances (m) of the gripper's mass centre to the nearest hand and nearest body part.
 
-    That is a hand, the head or the forearm's axis.
+    A body part is a hand, the head, or the axis of the forearm.
     """
     centre = pymunk.Vec2d(*gripper_centre(scene))
     to_hand = math.hypot(*_hand_offset(scene, centre))
@@ -124,9 +124,9 @@ def _hand_offset(scene: Scene, centre: tuple[float, float]) -> tuple[float, floa
 
 
 def beside_distance(scene: Scene, x: float, z: float) -> float:
-    """Metres from the gripper's axis, its grip at a point, to forearm and other hand.
+    """The distance (m) of a person beside the way (forearm and other hand) from the gripper's axis.
 
-    They are those of a person beside the way; nobody is there: infinite.
+    `x` and `z` (m) are the position of the grip. The distance is infinite if nobody is there.
     """
     if scene.arms is None:
         return math.inf
@@ -140,7 +140,7 @@ def beside_distance(scene: Scene, x: float, z: float) -> float:
 
 
 def tool_speed(scene: Scene) -> float:
-    """Metres per second of the point between the pads."""
+    """The speed (m/s) of the point between the pads."""
     return float(scene.links[2].velocity_at_local_point(_BETWEEN_PADS).length)
 
 

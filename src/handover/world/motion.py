@@ -1,4 +1,4 @@
-"""The arm's geometry, its paths, and smooth motion between two states."""
+"""The arm's kinematics, its paths, and smooth motion between two states."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from handover.world.parameters import FOREARM, SHOULDER, UPPER_ARM, WRIST_TO_GRIP
 
 Joints = tuple[float, float, float]
-"""Angles of shoulder, elbow and wrist, each against the link before, rad."""
+"""Angles of shoulder, elbow and wrist, each relative to the previous link, rad."""
 
 DOWN = -math.pi / 2
 
@@ -49,7 +49,7 @@ def joints_for(x: float, z: float) -> Joints | None:
 
 
 def between(start: Joints, goal: Joints, share: float) -> Joints:
-    """The joint angles at a share of the way."""
+    """The joint angles at a share of the way, linearly interpolated."""
     return (
         start[0] + (goal[0] - start[0]) * share,
         start[1] + (goal[1] - start[1]) * share,
@@ -70,7 +70,7 @@ def min_jerk(share: float) -> float:
     """The share of a rest-to-rest path that is covered after `share` of its time.
 
     Source: Flash and Hogan 1985, "The coordination of arm movements", equation for a straight
-    reach. Its fastest point is the middle, 1.875 times the mean speed.
+    reach. The speed peaks in the middle, at 1.875 times the mean speed.
 
     >>> min_jerk(0.0), min_jerk(0.5), min_jerk(1.0)
     (0.0, 0.5, 1.0)
@@ -80,7 +80,7 @@ def min_jerk(share: float) -> float:
 
 
 PEAK_OVER_MEAN = 1.875
-"""Fastest over mean speed of a rest-to-rest minimum-jerk motion."""
+"""Ratio of peak speed to mean speed of a rest-to-rest minimum-jerk motion."""
 
 Quintic = tuple[float, float, float, float, float, float]
 
@@ -88,8 +88,8 @@ Quintic = tuple[float, float, float, float, float, float]
 def quintic(start: float, speed: float, goal: float, duration: float) -> Quintic:
     """Coefficients of the minimum-jerk path from a moving start to rest at `goal`.
 
-    With `speed` 0 this is `min_jerk` scaled; with another it lets a motion be redirected in
-    flight without a jump of speed (acceleration starts and ends at zero).
+    With `speed` 0 this is `min_jerk`, scaled. Other speeds allow to redirect a motion under way
+    without a jump in speed (acceleration starts and ends at zero).
 
     Args:
         start: position now.

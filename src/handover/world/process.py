@@ -1,4 +1,4 @@
-"""A program as a generator that waits by yielding seconds, run by the schedule."""
+"""Run programs, which are generators that wait by yielding seconds, by the schedule."""
 
 from __future__ import annotations
 
@@ -15,22 +15,21 @@ from handover.world.parameters import NS
 Program = Generator[float, None, None]
 
 STALL_LIMIT = 10_000
-"""Steps at one instant after which a program is taken to hang."""
+"""The number of steps at one instant after which a program is considered to hang."""
 
 _ENDED = object()
 
 
 @dataclass(slots=True)
 class Process:
-    """Runs one program on one node, from now until it returns, crashes or the time is over."""
+    """Runs a program on a node, from now until it returns, crashes or time is over."""
 
     schedule: Schedule
     node: Node
     program: Program
-    around: Callable[[], AbstractContextManager[object]] = nullcontext  # of each step
+    around: Callable[[], AbstractContextManager[object]] = nullcontext  # context of each step
     is_over: bool = field(default=False, init=False)  # whether it returned or crashed
-    # the exception that crashed it, as one line with its place, or `None`
-    error: str | None = field(default=None, init=False)
+    error: str | None = field(default=None, init=False)  # its exception, in the form of `describe`
     _steps_now: int = field(default=0, init=False)
 
     def __post_init__(self) -> None:
@@ -44,7 +43,7 @@ class Process:
                 self._end()
                 return
             wait_ns = self._checked_ns(wait_s)
-        except Exception as error:  # noqa: BLE001  # whatever the code under test does is a result
+        except Exception as error:  # noqa: BLE001  # any exception of the code under test
             self.error = describe(error)
             self.program.close()
             self._end()
@@ -71,7 +70,7 @@ class Process:
 
 
 def describe(error: Exception) -> str:
-    """An exception as one line: type, text, and the innermost place."""
+    """An exception as one line: its type, its text, and the innermost line of code."""
     frames = traceback.extract_tb(error.__traceback__)
     place = ""
     if frames:

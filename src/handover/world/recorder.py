@@ -1,4 +1,4 @@
-"""Recording: the state of the scene, messages and measurements as samples."""
+"""Record messages and measurements of the scene as samples."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Recorder:
     """Collects samples in time order; a signal is kept only when it changes, an event always."""
 
     def __init__(self, observer: Callable[[int, dict[str, SampleValue]], None] | None) -> None:
-        # the whole ones; the instant that is still going on is not among them
+        # Complete samples; that of the current instant is not among them.
         self.samples: list[Sample] = []
         self._observer = observer
         self._t_ns = 0
@@ -25,25 +25,25 @@ class Recorder:
         self._last: dict[str, SampleValue] = {}
 
     def event(self, t_ns: int, name: str) -> None:
-        """Note that an event occurred."""
+        """Record an event."""
         self._at(t_ns)[name] = True
 
     def has(self, t_ns: int, name: str) -> bool:
-        """Whether this name was noted at this instant before."""
+        """Whether this name was already recorded at this instant."""
         return t_ns == self._t_ns and name in self._values
 
     def signal(self, t_ns: int, name: str, value: SampleValue) -> None:
-        """Note a signal's value if it changed."""
+        """Record the value of a signal if it has changed."""
         if name not in self._last or self._last[name] != value:
             self.refresh(t_ns, name, value)
 
     def refresh(self, t_ns: int, name: str, value: SampleValue) -> None:
-        """Note a signal's value even if unchanged, as its source is alive."""
+        """Record the value of a signal even if it is unchanged, as its source is alive."""
         self._last[name] = value
         self._at(t_ns)[name] = value
 
     def finish(self) -> None:
-        """Close the sample of the last instant."""
+        """Complete the sample of the last instant."""
         if self._values:
             values, self._values = self._values, {}
             self.samples.append((self._t_ns, values))
@@ -58,7 +58,7 @@ class Recorder:
 
 
 Forces = tuple[float, float, float]
-"""N on the hand that takes, the forearm and the other hand."""
+"""Forces (N) on the taking hand, the forearm and the other hand."""
 
 _NO_FORCE: Forces = (0.0, 0.0, 0.0)
 
@@ -68,7 +68,7 @@ def _greatest(forces: Forces, other: Forces) -> Forces:
 
 
 class Truth:
-    """Measures the bodies without error: for requirements and people, not for the robot."""
+    """Measures the bodies without error, for requirements and for people, not for the robot."""
 
     def __init__(self, scene: Scene, human: Human) -> None:
         self._scene = scene
@@ -77,13 +77,13 @@ class Truth:
         self._shown = (-1, _NO_FORCE)
 
     def step(self) -> None:
-        """Keep the greatest forces on the human between two measurements."""
+        """Update the largest forces on the human since the last measurement."""
         now = self._human.hand_force(), *self._human.arm_forces()
         if now != _NO_FORCE:
             self._peaks = _greatest(self._peaks, now)
 
     def measure(self, t_ns: int) -> dict[str, SampleValue]:
-        """All signals at an instant: lengths in m, to 1 mm, forces in N, speeds in m/s."""
+        """All signals at an instant: lengths in m to 1 mm, forces in N, speeds in m/s."""
         self.step()
         shown_ns, shown = self._shown
         peaks = _greatest(self._peaks, shown) if shown_ns == t_ns else self._peaks
@@ -116,7 +116,7 @@ class Truth:
         return {"beside_distance": round(distance, 3)}
 
     def places(self) -> dict[str, SampleValue]:
-        """The position of the piece, and the grip's distance behind and above it: m, to 1 mm."""
+        """The piece's position along x, and the grip's distance behind and above it: m to 1 mm."""
         piece, grip = self._scene.piece.position, measures.tool_point(self._scene)
         return {
             "piece_x": round(piece.x, 3),

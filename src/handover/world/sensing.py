@@ -1,4 +1,4 @@
-"""The robot's sensors, reading the bodies in the scene."""
+"""The robot's sensors, which measure the bodies in the scene."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from handover.world.scene import Scene
 class Sensors:
     """Gaze, pressure, location and the distance of the hand, measured on the bodies."""
 
-    scene: Scene  # of the bodies
+    scene: Scene  # with the bodies
     human: Human  # whose head and hand are tracked
     faults: SensorFaults
     rng: random.Random  # draws the noise
@@ -29,16 +29,16 @@ class Sensors:
         return round(self.faults.delay_s * p.NS)
 
     def remember(self, t_ns: int) -> None:
-        """Keep the reading of this instant, if the sensors are slow."""
+        """Store the reading of this instant, if the sensors have a delay."""
         if self._delay_ns:
             self._past.append((t_ns, self._read()))
 
     def read(self, t_ns: int) -> Reading:
         """Read gaze, pressure and location.
 
-        A sensor has a reading while the tracked head or hand is in view and still: a face that
-        is turned away, or a hand at the chest, is not seen. Pressure is that of a hand which
-        has opened or closed: a slack one has not made up its mind.
+        A sensor has a reading while the tracked head or hand is in view and still: a face that is
+        turned away, or a hand at the chest, is not seen. Pressure has a reading only once the hand
+        has been told to close or open.
         """
         if not self._delay_ns:
             return self._read()
@@ -49,14 +49,14 @@ class Sensors:
         return Reading(gaze=None, pressure=None, location=None)
 
     def hand_offset(self) -> tuple[float, float] | None:
-        """Metres between the mass centres of hand and gripper on each axis; `None`: unknown."""
+        """The measured distance (m) of hand and gripper on each axis; `None`: unknown."""
         if self.is_dead("distance"):
             return None
         x, z = measures.hand_offset(self.scene)
         return abs(x + self._noise()), abs(z + self._noise())
 
     def is_dead(self, sensor: str) -> bool:
-        """Whether a sensor drops out."""
+        """Whether a sensor never gives a reading."""
         return sensor in self.faults.dropout
 
     def _read(self) -> Reading:
@@ -75,7 +75,7 @@ class Sensors:
         )
 
     def _reads(self, sensor: str, known: bool) -> bool:
-        """Whether a sensor has a reading, given whether its quantity can be observed."""
+        """Whether a sensor gives a reading, given whether its quantity can be observed."""
         if not known or self.is_dead(sensor):
             return False
         return not self.faults.loss or self.rng.random() >= self.faults.loss

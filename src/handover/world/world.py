@@ -25,24 +25,24 @@ if TYPE_CHECKING:
 PERFECT = SensorFaults()
 
 HUMAN_SIGNALS = "human_signals"
-"""Topic whose text is the name of an event."""
+"""The topic whose messages are names of events, as text."""
 
 CLOSINGS = ("grip_closed", "robot_gripper")
-"""Topics whose messages always come with a measurement of the hand's distance."""
+"""Topics whose messages are always recorded with a measurement of the hand's distance."""
 
 
 class World:
     """Robot body, human body and bus in one timeline of integer nanoseconds.
 
-    Physics is stepped while something moves; over rest it jumps to the next scheduled call.
+    The physics is stepped while something moves; at rest, time jumps to the next scheduled call.
 
     Args:
-        rng: draws the planner's latency and the noise of sensors.
+        rng: draws the planner's latency, faults, and the noise of sensors.
         faults: faults of the sensors.
         scene_faults: faults of the scene.
-        jump: `False` steps the physics over rest, too.
-        films: keep a frame at 10 Hz while something moves.
-        observer: called with each whole sample.
+        jump: `False` steps the physics at rest, too.
+        films: record a frame at 10 Hz while something moves.
+        observer: called with each complete sample.
     """
 
     def __init__(
@@ -80,7 +80,7 @@ class World:
         self._watch()
 
     def run(self, horizon_ns: int) -> None:
-        """Make all scheduled calls up to an instant and end the recording there."""
+        """Make all scheduled calls up to an instant (inclusive), and complete the last sample."""
         while (t_ns := self.schedule.next_ns()) is not None and t_ns <= horizon_ns:
             self._advance(t_ns)
             self.schedule.run_next()
@@ -88,9 +88,9 @@ class World:
         self.recorder.finish()
 
     def sense(self) -> Reading:
-        """Read the sensors as the robot does, and publish the reading.
+        """Read the robot's sensors and publish the reading.
 
-        A sensor without a reading is published as false, a dead one as unknown.
+        A sensor without a reading is published as false, and a dead one as unknown.
         """
         now = self.schedule.now_ns
         reading = self.sensors.read(now)
@@ -112,13 +112,13 @@ class World:
         return seen_piece(self.scene)
 
     def hand_distance(self) -> float | None:
-        """Sensed distance between the mass centres of hand and gripper, metres; `None`: unknown."""
+        """The measured distance (m) between the mass centres of hand and gripper, if known."""
         self._note("hand_looked_for")
         return self._measure_hand(self.schedule.now_ns)
 
     @property
     def stepped_s(self) -> float:
-        """Seconds for which the physics was stepped."""
+        """Simulated seconds for which the physics was stepped."""
         return self._stepped * p.STEP_NS / p.NS
 
     def film(self) -> shown.Scene | None:
@@ -146,7 +146,7 @@ class World:
                 self._watch()
 
     def _wake(self, seconds: float) -> None:
-        """Expect the scene to move for so many seconds."""
+        """Expect the scene to move for some seconds."""
         now = self.schedule.now_ns // p.STEP_NS
         until = now + round((seconds + p.SETTLE_S) * p.NS) // p.STEP_NS
         self._planned_until = max(self._planned_until, until)
@@ -163,7 +163,7 @@ class World:
         )
 
     def _watch(self) -> None:
-        """Publish distance and speed, and keep a frame."""
+        """Publish measurements, and record a frame."""
         t_ns = self._step * p.STEP_NS
         self._measure_hand(t_ns)
         self._measure_truth(t_ns)
@@ -186,7 +186,7 @@ class World:
         self.recorder.event(now, name)
 
     def _measure_hand(self, t_ns: int) -> float | None:
-        """Publish how far the hand is from the gripper, to 0.1 mm, once at an instant."""
+        """Publish the distance of the hand from the gripper, to 0.1 mm, once per instant."""
         seen_ns, distance = self._hand_seen
         if seen_ns == t_ns:
             return distance
