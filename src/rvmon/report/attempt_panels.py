@@ -1,4 +1,4 @@
-"""The panels of a run's page, one per attempt shown, and the panel on which it opens."""
+"""The panels of a run's page, one per shown attempt, and the panel on which the page opens."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 class JudgedRun(Struct, frozen=True):
-    """A run by its display name, with its verdicts and its samples, if these were kept."""
+    """A run with its display name, verdicts and samples; `samples` is empty if not kept."""
 
     name: str
     report: Report
@@ -43,7 +43,7 @@ class RunPage(Struct, frozen=True):
     run: JudgedRun  # the run
     spec: CheckedSpec  # its specification
     command: str  # the command that replays it
-    # other runs by the same specification, to find nearest passing attempts in
+    # other runs of the same specification, searched for nearest passing attempts
     others: Sequence[JudgedRun] = ()
     facts: Sequence[tuple[str, Child]] = ()  # more about the run, as pairs of name and value
     scene: Scene | None = None  # the motion of the robot, if it is known
@@ -65,7 +65,7 @@ class Panel(Struct, frozen=True):
     part_truths: tuple[PartTruth, ...] = ()
     # the instant of a response after the deadline, ticks; `None` if there was none
     late: int | None = None
-    miss: str = ""  # without an attempt, the parts that the trigger lacked when it came nearest
+    miss: str = ""  # without an attempt, the near miss of the trigger, in words
 
     @property
     def instant(self) -> int:
@@ -75,12 +75,12 @@ class Panel(Struct, frozen=True):
         return self.attempt.triggered if self.attempt.decided is None else self.attempt.decided
 
 
-LOOKS = 60  # the number of instants, evenly spaced over the view, at which two runs are compared
+LOOKS = 60  # the number of evenly spaced instants of the view at which two runs are compared
 MOST = 100  # the most passing attempts that are compared
 
 
 Candidate = tuple[JudgedRun, tuple[Track, ...]]
-"""A run in which passing attempts of a requirement are looked for, and its tracks."""
+"""A run that is searched for passing attempts of a requirement, and its tracks."""
 
 
 def nearest_passing(
@@ -89,8 +89,8 @@ def nearest_passing(
     """The passing attempt whose signals differ least from those of a failed one.
 
     Runs are aligned at the triggers. The distance of two tracks is the share of the view over which
-    their values differ; of numbers the mean distance relative to their range; of events the
-    distance of the first occurrences. Distances of all tracks are added.
+    their values differ; for numbers, the mean difference relative to the largest value; for events,
+    the distance of the first occurrences. The distances of all tracks are added.
     """
     import numpy as np
 
@@ -147,7 +147,7 @@ def _distances(mine: ValuesAt, others: ValuesAt, *, numbers: bool) -> NDArray[An
             np.where(other_known, other_values, 0.0),
         )
         largest = np.maximum(abs(values).max(), abs(other_values).max(axis=1, keepdims=True))
-        with np.errstate(all="ignore"):  # of infinite numbers those differ that are not equal
+        with np.errstate(all="ignore"):  # infinities give NaN, which counts as 1 if they differ
             share = abs(values - other_values) / np.where(largest > 0, largest, 1.0)
         differ = np.where(differ, np.fmin(share, 1.0), 0.0)
     distances: NDArray[Any] = np.where(both, differ, known != other_known).mean(axis=1)
@@ -174,13 +174,14 @@ def panels_of(content: RunPage) -> list[Panel]:
 
 
 class _Panels:
-    """Makes the panels of a page; formulas are evaluated in one pass for all of them."""
+    """Builds the panels of a page; one pass over the run evaluates the formulas of all panels."""
 
     def __init__(self, content: RunPage, shown: Mapping[str, Sequence[Attempt]]) -> None:
         self._content, self._shown = content, shown
         report = content.run.report
         samples = held(content.run.samples)
-        self._begin = samples[0].t if samples else report.origin  # once, as each look takes a block
+        # Kept, because each access to a sample of a long run reads a block.
+        self._begin = samples[0].t if samples else report.origin
         self._changes: dict[int, Mapping[str, Changes]] = {}
         self._waits = {
             name: waits_of(content.spec.requirements[name], attempts)
@@ -192,22 +193,22 @@ class _Panels:
         if samples and report.end is not None:
             questions = list(self._questions(shown))
             declared, absent = {*content.spec.signals, *content.spec.events}, report.absent
-            names = frozenset(declared - absent)  # that have a source in the run
-            # Both at once, as a long run is read for each time that it is gone through.
+            names = frozenset(declared - absent)  # the names with a source in the run
+            # Both in one pass, because each pass reads a long run from its file again.
             noted = RunChanges(content.spec, self._looks(content.run))
             self._changes[id(content.run)] = noted.by_name
             self._truths = look_through(
                 content.spec, questions, noted.passing(samples), report.end, names,
                 outages=samples.outages,
             )  # fmt: skip
-        # By requirement, its attempts with their late responses and views.
+        # The shown attempts of each requirement, with their late responses and views.
         self._views = {name: self._seen(name, attempts) for name, attempts in shown.items()}
 
     def _seen(
         self, name: str, attempts: Sequence[Attempt]
     ) -> Sequence[tuple[Attempt, int | None, View]]:
         report, late = self._content.run.report, self._late(name, attempts)
-        # Attempts in doubt are numbered apart: theirs are not the numbers of the late responses.
+        # Attempts in doubt are numbered separately, so their numbers are not keys of `late`.
         came = [None if one.in_doubt else late.get(one.number) for one in attempts]
         views = [view_of(one, report, late_at) for one, late_at in zip(attempts, came, strict=True)]
         return [*zip(attempts, came, views, strict=True)]
@@ -233,7 +234,7 @@ class _Panels:
         candidates: list[Candidate] = []
         if samples and any(attempt.verdict is Verdict.FAIL for attempt in attempts):
             others = (other for other in self._content.others if other.samples)
-            # The run itself first: a passing attempt nearby was made under the same conditions.
+            # The run itself first: its attempts were made under the same conditions.
             candidates = [(run, tracks), *((other, self._tracks(other, name)) for other in others)]
         for attempt, came, view in self._views[name]:
             reference = None
@@ -255,13 +256,13 @@ class _Panels:
         if not run.samples:
             return ()
         spec = self._content.spec
-        # By identity, as a run holds lists and has no hash; the content keeps every run alive.
+        # Keyed by identity, as runs are not hashable; `_content` keeps every run alive.
         if id(run) not in self._changes:
             self._changes[id(run)] = changes_of(spec, run.samples, self._looks(run))
         return tracks_of(spec, spec.requirements[name], self._changes[id(run)], run.report.absent)
 
     def _looks(self, run: JudgedRun) -> Looks:
-        """Where a run is drawn, or compared with a failed attempt, at least."""
+        """The parts of a run that are drawn or compared with a failed attempt, at least."""
         requirements, stretches = self._content.spec.requirements, list[tuple[int, int]]()
         everywhere = set[str]()
         for name, attempts in self._shown.items():
@@ -271,7 +272,7 @@ class _Panels:
                 view, shifts = view_of(attempt, self._content.run.report), [0]
                 start, end = view.start, view.end
                 if attempt.verdict is Verdict.FAIL:
-                    # A late response that is in view makes it at most twice as long.
+                    # A late response in view makes the view at most twice as long.
                     start, end = start - (end - start), end + (end - start)
                     passing = islice(run.report.of(name, Verdict.PASS), MOST)
                     shifts += [attempt.triggered - passed.triggered for passed in passing]
@@ -297,7 +298,7 @@ class _Panels:
         return TriggerParts(spec, spec.requirements[name]).miss_in(self._truths)
 
     def _late(self, name: str, attempts: Sequence[Attempt]) -> Mapping[int, int]:
-        """By number of the attempt, late responses, from the report or computed now."""
+        """Late responses by number of the attempt, from the report or computed now."""
         if name not in self._waits or self._truths is None:
             return self._content.run.report.late.get(name, {})
         return late_in(attempts, self._waits[name], self._truths)
@@ -311,7 +312,7 @@ def panel_id(requirement: str, attempt: Attempt | None) -> str:
 
 
 SHOWN = {Verdict.FAIL: 4, Verdict.INCONCLUSIVE: 2, Verdict.PASS: 2}
-"""The most attempts shown per requirement and verdict, the worst first; the rest is counted."""
+"""The most attempts shown per requirement and verdict, worst first; the rest is only counted."""
 
 MOST_SHOWN = 400
 """The most attempts on a page, unless there are more requirements; each takes some 20 kB."""

@@ -1,4 +1,4 @@
-"""The changes of signals and events over a recording, in columns where the input is in columns."""
+"""The changes of signals and events over a recording; kept in columns if the input has columns."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ if TYPE_CHECKING:
     from rvmon.recordings.batch import Batch, Cells
 
 ValuesAt = tuple["NDArray[Any]", "NDArray[Any]"]
-"""Values, and whether each is known: it is not before the first change."""
+"""Values, and whether each is known; before the first change none is."""
 
 _DENSE = 8  # with more changes per place than this, only extremes are drawn
 
 
 class Course(Sequence[tuple[int, Scalar]]):
-    """Changes held as columns; each pair is made on access.
+    """A sequence of changes, held as columns; each pair is created on access.
 
     Args:
         times: int64[n] ticks, ascending.
@@ -40,10 +40,10 @@ class Course(Sequence[tuple[int, Scalar]]):
 
     @classmethod
     def of(cls, changes: Sequence[tuple[int, Scalar]]) -> Course:
-        """The same changes in columns."""
+        """Convert changes to columns."""
         import numpy as np
 
-        # `False` where a value is unknown: an array of truth values stays one.
+        # `False` stands for unknown values, so that an array of truth values stays boolean.
         values = [False if value is None else value for _, value in changes]
         texts = any(isinstance(value, str) for value in values)
         return cls(
@@ -54,7 +54,7 @@ class Course(Sequence[tuple[int, Scalar]]):
 
     @classmethod
     def joined(cls, courses: Sequence[Course]) -> Course:
-        """One behind the other."""
+        """The concatenation of courses."""
         import numpy as np
 
         return cls(*map(np.concatenate, zip(*(course._columns for course in courses), strict=True)))
@@ -123,11 +123,11 @@ class Course(Sequence[tuple[int, Scalar]]):
 
 
 class Looks(Struct, frozen=True):
-    """Where changes are looked at."""
+    """The parts of a run for which changes are needed."""
 
     # stretches of time, ticks, both ends included; `None`: the whole run
     stretches: Sequence[tuple[int, int]] | None = None
-    everywhere: Set[str] = frozenset()  # names that are looked at over the whole run
+    everywhere: Set[str] = frozenset()  # names that are needed over the whole run
 
 
 EVERYWHERE = Looks()
@@ -136,9 +136,9 @@ EVERYWHERE = Looks()
 def changes_of(
     spec: CheckedSpec, samples: Iterable[Sample], looks: Looks = EVERYWHERE
 ) -> Mapping[str, Changes]:
-    """By name, the changes of each signal and event of a run, at least where they are looked at.
+    """The changes of each signal and event of a run by name, complete within `looks`.
 
-    There the values are right; of columns elsewhere only some changes are kept, in little memory.
+    Elsewhere only some changes are kept, to save memory.
     """
     noted = RunChanges(spec, looks)
     for _ in noted.passing(held(samples)):
@@ -147,7 +147,7 @@ def changes_of(
 
 
 class RunChanges:
-    """Collects the changes of signals and events, piece by piece of a run, in order."""
+    """Collects the changes of signals and events, piece by piece, in order."""
 
     def __init__(self, spec: CheckedSpec, looks: Looks) -> None:
         self._everywhere = looks.everywhere
@@ -155,13 +155,13 @@ class RunChanges:
         self._signals = spec.signals
         self._ignoring = spec.ignoring
         stale = {name: signal.stale_after for name, signal in spec.signals.items()}
-        # the changes of each so far
+        # the changes collected so far
         self.by_name = {name: Changes(stale.get(name)) for name in (*spec.signals, *spec.events)}
-        # by signal the last update in samples that nobody looks at, which is not added yet
+        # by signal, the last update outside the needed parts, which is not added yet
         self._waiting: dict[str, tuple[int, Value]] = {}
 
     def passing(self, run: HeldRecording) -> Iterator[Batch | Sample]:
-        """The pieces of the run, whose changes are added as they go by."""
+        """Pass the pieces of the run through, and collect their changes."""
         known = UnknownWhileLost(run.outages, self.by_name.keys())
         for piece in run.pieces():
             for part in known.parts(piece):
@@ -170,7 +170,7 @@ class RunChanges:
         self._settle()
 
     def _settle(self) -> None:
-        """Add the last updates that nobody looked at: what comes then is seen beside them."""
+        """Add the last updates before a needed part: they are the values at its start."""
         for name, (t, value) in self._waiting.items():
             self.by_name[name].add(t, value, is_signal=True)
         self._waiting.clear()
@@ -179,7 +179,8 @@ class RunChanges:
         if isinstance(piece, Sample):
             to_come = len(self._to_come or ())
             is_seen = self._looks_at(piece.t, piece.t)
-            if is_seen or len(self._to_come or ()) < to_come:  # a stretch may be without samples
+            # The second case is a stretch without samples that was passed.
+            if is_seen or len(self._to_come or ()) < to_come:
                 self._settle()
             for name, value in updates_in(piece.values, self._ignoring).items():
                 if name in self.by_name and (is_seen or name in self._everywhere):
@@ -193,14 +194,14 @@ class RunChanges:
             cells = piece.signals[name]
             if is_seen or name in self._everywhere:
                 self.by_name[name].add_cells(piece, cells)
-            elif (row := cells.last_said) is not None:  # its value is that of what comes then
+            elif (row := cells.last_said) is not None:  # the value at the start of the next piece
                 self.by_name[name].add_cells(piece.cut(row, row + 1), cells.cut(row, row + 1))
         for name in self.by_name.keys() & piece.events.keys():
             if is_seen or name in self._everywhere:
                 self.by_name[name].add_occurrences(piece.times, piece.events[name].says)
 
     def _looks_at(self, first: int, last: int) -> bool:
-        """Whether anything is looked at from an instant to another; they ascend."""
+        """Whether any instant from `first` to `last` is needed; calls must be in order of time."""
         to_come = self._to_come
         while to_come and to_come[0][1] < first:
             to_come.popleft()
@@ -208,7 +209,7 @@ class RunChanges:
 
 
 class Changes:
-    """The changes of a name: values and instants; stale so many ticks behind an update."""
+    """The changes of one name; a signal becomes unknown `stale_after` ticks after an update."""
 
     def __init__(self, stale_after: int | None) -> None:
         self._stale_after = stale_after
@@ -231,10 +232,10 @@ class Changes:
         self._last, self._known = t, known
 
     def _grow_stale(self, t: int | None) -> None:
-        """Add the change to unknown if the value goes stale before an instant, or the end."""
+        """Add the change to unknown if the value goes stale before `t`; `None`: before the end."""
         if self._stale_after is None or self._last is None or self._known is None:
             return
-        # A value is still known `stale after` its update, and no longer one tick behind that.
+        # A value is still known `stale_after` ticks after its update, and unknown one tick later.
         stale_at = self._last + self._stale_after + 1
         if t is None or t > stale_at:
             self._found.append((stale_at, None))
@@ -254,14 +255,14 @@ class Changes:
             values = np.array(cells.labels, object)[values]
         unknown = cells.unknown
         hidden = np.zeros(len(rows), bool) if unknown is None else unknown[rows]
-        # The first row is compared with what came before this piece, the others with each other.
+        # The first row is compared with the value before this piece, the others with each other.
         self._add_value(int(times[0]), None if hidden[0] else _plain(values[0]))
         differs = (values[1:] != values[:-1]) & ~(hidden[1:] & hidden[:-1])
         differs |= hidden[1:] != hidden[:-1]
         if self._stale_after is not None:
             aged = (np.diff(times) > self._stale_after + 1) & ~hidden[:-1]
-            # Behind a stale value any known one is a change, also an equal one; an unknown one is
-            # none.
+            # After a stale value, any known value is a change, even an equal one, and an unknown
+            # one is not.
             differs = np.where(aged, ~hidden[1:], differs)
         else:
             aged = np.zeros(len(times) - 1, bool)
@@ -277,7 +278,7 @@ class Changes:
         self._known = None if hidden[-1] else _plain(values[-1])
 
     def add_occurrences(self, times: NDArray[Any], says: NDArray[Any]) -> None:
-        """Add the occurrences of an event in rows; a sure one wins over a possible one."""
+        """Add the occurrences of an event in rows; at equal instants a sure one wins."""
         from rvmon.recordings.batch import UNKNOWN, YES
 
         may = (says == UNKNOWN) | (says == YES)

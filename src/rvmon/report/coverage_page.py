@@ -1,4 +1,4 @@
-"""The page of coverage: faults, holes, crosses, tests and growth."""
+"""The coverage page: faults, holes, crosses, tests and growth."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ WIDTH, HEIGHT = 1000, 100
 """The size of the drawing in SVG units; it is stretched to the width of the page."""
 
 COLOURS = 6  # the number of strategies with a colour of their own; the others share one
-DOTS = 300  # the most tests that are marked by dots with links; of more, only the line is drawn
+DOTS = 300  # the most tests marked by dots with links; with more, only the line is drawn
 
 
 def growth_chart(summary: Summary) -> ET.Element:
     """Draw the covered share after each test.
 
-    Dots on the line of all tests have the colour of the strategy whose test added items there.
+    A dot on the line of all tests has the colour of the strategy whose test added items there.
     """
     count = len(summary.coverage.entries)
     numbers = {name: min(at, COLOURS) for at, name in enumerate(summary.strategies)}
@@ -98,12 +98,12 @@ def _key(summary: Summary, numbers: dict[str, int]) -> ET.Element:
 OPEN = 30  # the most lines of a list shown at once; the rest is folded
 
 SHORT, LONG = 8, 40
-"""The most items of a list that is always open, and of one that is open if it has a hole."""
+"""The most items of a list that is always unfolded, and of one that is if it has a hole."""
 
 PALE, STRONG = 12, 62
 """Percent of colour in the cells with the fewest and with the most hits."""
 
-MOST = 2_000  # the most tests listed completely; of more, only the notable ones are listed
+MOST = 2_000  # up to so many tests all are listed; of more, only the notable ones
 NAMED = 4  # the most items named that a test added; the rest is counted
 
 
@@ -199,9 +199,10 @@ def _most_hits(summary: Summary, group: Group) -> int:
 
 
 def _grid(summary: Summary, group: Group) -> dict[str, object]:
-    """A cross as a table: what heads its rows and columns, and the most hits of an item.
+    """A cross as values of the template: its axes, rows, and the most hits of an item.
 
-    Each row has its heads with the rows that each spans, and its items with their places.
+    A row consists of its heads, each with the number of rows that it spans, and its items with
+    their places.
     """
     grid = summary.grid(group)
     axes = [group.axes[name] for name in grid.down]
@@ -258,7 +259,7 @@ def listed_tests(summary: Summary) -> Collection[int]:
 
 
 def _columns(summary: Summary, listed: Collection[int]) -> list[str]:
-    """The columns of tests that are known and differ."""
+    """The columns of the list of tests that have contents; campaigns only if there are several."""
     shown = {
         "campaign": len(summary.coverage.campaigns) > 1,
         "strategy": any(summary.strategies),
@@ -269,7 +270,7 @@ def _columns(summary: Summary, listed: Collection[int]) -> list[str]:
 
 
 def _verdicts_of(record: TestRecord) -> Iterator[tuple[str, Verdict, str]]:
-    """The failed requirements, and the number of each other verdict: texts around letters."""
+    """The failed requirements, and the count of each other verdict; as text, letter, text."""
     if record.failed:
         yield "", Verdict.FAIL, f" {', '.join(record.failed)}"
     if known := record.failed_as_expected:

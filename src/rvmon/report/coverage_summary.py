@@ -1,4 +1,4 @@
-"""The coverage figures that terminal, page and JSON show, computed lazily; and the JSON."""
+"""The coverage figures shown by terminal, page and JSON, computed lazily; and the JSON."""
 
 from __future__ import annotations
 
@@ -34,16 +34,16 @@ from rvmon.texts import counted
 from rvmon.trace.time import format_stamped
 from rvmon.verdicts import Verdict
 
-LISTED = 5  # the most tests named of those that hit an item
+LISTED = 5  # the most tests named among those that hit an item
 
 
 class Grid(NamedTuple):
-    """A cross: the bins of the last axis from left to right, of the others downwards."""
+    """A cross as a table: bins of the last axis are columns, those of the other axes are rows."""
 
-    down: Sequence[str]  # the other axes
-    across: str  # the last axis
+    down: Sequence[str]  # the axes of the rows
+    across: str  # the axis of the columns
     columns: Sequence[str]  # its bins
-    # by the bins of the other axes, the items beside each other with their places, if there
+    # for each row its bins, and its items with their places; `None`: the cross lacks the item
     rows: Sequence[tuple[tuple[str, ...], Sequence[tuple[int, Item] | None]]]
 
 
@@ -72,7 +72,7 @@ class Summary(Answers):
 
     @cached_property
     def hole_texts(self) -> Mapping[int, Hole]:
-        """By place, each hole in words."""
+        """The holes in words, by place."""
         model, items, counts = self.coverage.model, self.coverage.items, self.totals.counts
         hits = self._hits_at(np.flatnonzero(counts), counts[counts > 0])
         nearest = nearest_tests([items[place] for place in self.holes], self._hits, model)
@@ -83,7 +83,7 @@ class Summary(Answers):
 
     @property
     def _hits(self) -> list[tuple[str, Hits]]:
-        """The hits of each test; of tests with equal items, only the first."""
+        """The hits of each test, without tests that hit the same items as an earlier one."""
         hits_by_row: dict[bytes, tuple[str, Hits]] = {}
         for entry in self.coverage.entries:
             key = entry.row.items.tobytes()
@@ -110,7 +110,7 @@ class Summary(Answers):
         return places
 
     def kind(self, place: int, item: Item) -> BinKind:
-        """The kind of an item; unreachable ones are ignored."""
+        """The kind of an item; unreachable items count as ignored."""
         return BinKind.IGNORE if self.goals.unreachable[place] else item.kind
 
     def kind_text(self, place: int, item: Item) -> str:
@@ -121,16 +121,16 @@ class Summary(Answers):
 
     @cached_property
     def fewest(self) -> Smallest:
-        """The smallest known set of tests that covers as much."""
+        """The smallest known set of tests with the same coverage."""
         return fewest(self)
 
     @cached_property
     def ranking(self) -> Sequence[Step]:
-        """An order of that set, by the items each test adds."""
+        """The tests of `fewest`, ordered by the items that each adds."""
         return ranking(self, self.fewest.places)
 
     def ranking_text(self) -> str:
-        """The size of that set in words, with its lower bound."""
+        """The size of `fewest` in words, with its lower bound."""
         count, least = len(self.ranking), self.fewest.at_least
         text = f"{count:,} of {counted(len(self.coverage.entries), 'test')} cover the same"
         if least >= count:
@@ -143,7 +143,7 @@ class Summary(Answers):
         return None if self._earlier is None else compare(self._earlier, self.coverage)
 
     def changes(self) -> list[tuple[str, Sequence[tuple[str, str]], Verdict]]:
-        """Items that changed since the earlier coverage: heading, items, whose colour they have."""
+        """Items that changed since the earlier coverage: heading, items, verdict for the colour."""
         if self.comparison is None:
             return []
         changes = (
@@ -166,13 +166,13 @@ class Summary(Answers):
 
     @cached_property
     def not_fine(self) -> Sequence[int]:
-        """The tests with an unexpected failure, or that did not complete."""
+        """The tests that failed unexpectedly or did not complete."""
         entries = self.coverage.entries
         return [place for place, entry in enumerate(entries) if not_fine(entry.record)]
 
     @cached_property
     def faults(self) -> Mapping[str, Sequence[int]]:
-        """By fault in words, the tests that had it; the most frequent first."""
+        """The tests by their fault in words, the most frequent fault first."""
         tests: dict[str, list[int]] = {}
         for place in self.not_fine:
             tests.setdefault(not_fine(self.record(place)), []).append(place)
@@ -180,7 +180,7 @@ class Summary(Answers):
 
     @cached_property
     def known(self) -> Mapping[str, Sequence[int]]:
-        """By expected failure with its reason, the tests that had it."""
+        """The tests by their expected failure, with its reason."""
         tests: dict[str, list[int]] = {}
         for place, entry in enumerate(self.coverage.entries):
             for name, reason in entry.record.failed_as_expected.items():
@@ -197,7 +197,7 @@ class Summary(Answers):
         return starts
 
     def verdicts(self) -> VerdictTable:
-        """Tests by strategy, requirement and verdict."""
+        """The numbers of tests by strategy, requirement and verdict."""
         counts: dict[str, dict[str, Counter[Verdict]]] = {}
         tests: Counter[str] = Counter()
         # Requirements of the model come first, in its order.
@@ -289,7 +289,7 @@ def not_fine(record: TestRecord) -> str:
 
 
 def is_grid(group: Group) -> bool:
-    """Whether a group is shown as a grid: a cross not larger than a specification allows.
+    """Whether a group is shown as a grid: a cross no larger than a specification allows.
 
     >>> from rvmon.coverage import Subject
     >>> is_grid(Group("g", Subject.CROSS, {}, axes={"x": ["a", "b"], "y": ["c"]}))
@@ -301,7 +301,7 @@ def is_grid(group: Group) -> bool:
 
 
 def cell_look(kind: BinKind, goal: int, count: int) -> tuple[str, str]:
-    """An item in a grid: its look by name, and its hits, with the goal if they are too few.
+    """The cell of an item in a grid: its CSS class, and its hits, with the goal if too few.
 
     >>> cell_look(BinKind.GOAL, 1, 7), cell_look(BinKind.GOAL, 3, 1)
     (('covered', '7'), ('hole', '1/3'))

@@ -74,7 +74,7 @@ def _history(number: int, record: TestRecord, version: str) -> dict[str, str]:
 
 
 def _options(parent: ET.Element, group: Group) -> None:
-    # UCIS has one goal for all bins of a point: with the greatest no hole counts as covered.
+    # UCIS has one goal for all bins of a point. With the greatest, no hole counts as covered.
     goal = max(item.goal for item in group.items.values())
     ET.SubElement(
         parent, "options", weight=str(group.weight), at_least=str(goal), comment=shown(group.title)
@@ -86,8 +86,7 @@ def _coverpoint(parent: ET.Element, summary: Summary, group: Group) -> None:
     _options(point, group)
     for number, (place, item) in enumerate(summary.places(group)):
         one = ET.SubElement(point, "coverpointBin", _bin(summary, place, item))
-        # A bin of ours is a formula; the schema demands a range of values, so its number stands
-        # there.
+        # Our bins are formulas, but the schema demands a range of values: the bin's number.
         values = ET.SubElement(one, "range", {"from": str(number), "to": str(number)})
         _contents(values, summary, place)
         _remarks(one, summary, group, item)

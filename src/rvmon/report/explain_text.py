@@ -1,4 +1,4 @@
-"""Requirements, example timelines and findings of the analysis as text for a terminal."""
+"""Requirements, example timelines and results of the analysis as text for a terminal."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def _cells(name: str, example: Example, spec: CheckedSpec, instants: Sequence[in
         unit = spec.signals[name].type.unit
         text = f"{shown} {unit}" if unit and shown not in (HIGH, LOW, NOBODY_KNOWS) else shown
         plain = text in (HIGH, LOW, NOBODY_KNOWS)
-        # A value is written where it changes, a line says that it stays; blocks are lines already.
+        # A value is written at its change; a line means that it stays. Blocks are lines already.
         cells.append("─" if text == before and not plain else text)
         before = text
     return cells
@@ -174,7 +174,7 @@ _SHOWN = (
 
 
 def explained(compiled: CompiledSpec, name: str, budget: Budget | None = None) -> Iterator[Line]:
-    """One requirement: in words, facts, automaton, the shortest timeline of each verdict."""
+    """One requirement: words, facts, automaton, and the shortest timeline of each verdict."""
     own = compiled.requirements[name]
     yield _title(own.requirement)
     yield []
@@ -266,7 +266,7 @@ def _wrapped(text: str, first: str, rest: str) -> Line:
 
 
 def analysis_lines(analysis: Analysis, spec: CheckedSpec) -> list[str]:
-    """The lines to print below the findings."""
+    """The lines to print below the diagnostics of an analysis."""
     lines: list[str] = []
     for conflict, example in analysis.timelines:
         ids = list(dict.fromkeys(conflict.ids))

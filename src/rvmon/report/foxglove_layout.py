@@ -1,4 +1,4 @@
-"""The layout for Foxglove: verdicts (states, numbers, attempts), and scenes."""
+"""The Foxglove layout for verdicts, numbers and attempts, and messages for scenes."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from rvmon.report.tracks import Outline, Scene, thresholds
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TICKS_PER_SECOND
 
-SCENE = "/rvmon/scene"  # its topic
+SCENE = "/rvmon/scene"  # the topic of scenes
 
-_THIN = 0.006  # metres: how thick the line about a polygon is at least
+_THIN = 0.006  # the least thickness of a polygon's outline, metres
 
 _LINE_STRIP, _LINE_LOOP = 0, 1
 
@@ -25,11 +25,11 @@ _COLOURS = {
     "person": (0.85, 0.55, 0.45),
     "gaze": (0.9, 0.85, 0.3),
 }
-"""By role; what has none is grey."""
+"""Red, green and blue by role of a body; other roles are grey."""
 
 
 def scene_updates(scene: Scene) -> Iterator[tuple[int, dict[str, Any]]]:
-    """Ticks and content of a message for each frame."""
+    """The instant (ticks) and content of a message for each frame."""
     places = {name: place for place, name in enumerate(scene.bodies)}
     for t, flat in scene.frames:
         poses = {name: flat[3 * place : 3 * place + 3] for name, place in places.items()}
@@ -44,7 +44,7 @@ def scene_updates(scene: Scene) -> Iterator[tuple[int, dict[str, Any]]]:
             "timestamp": seconds_and_rest(t),
             "frame_id": "world",
             "id": "scene",
-            # 0: until the next message with this id.
+            # 0 means: until the next message with this id.
             "lifetime": seconds_and_rest(0),
             "frame_locked": False,
             **drawings,
@@ -53,7 +53,7 @@ def scene_updates(scene: Scene) -> Iterator[tuple[int, dict[str, Any]]]:
 
 
 def seconds_and_rest(ticks: int) -> dict[str, int]:
-    """An instant as Foxglove's messages write it.
+    """An instant in the form of Foxglove's messages.
 
     >>> seconds_and_rest(1_500_000_000)
     {'sec': 1, 'nsec': 500000000}
@@ -63,13 +63,13 @@ def seconds_and_rest(ticks: int) -> dict[str, int]:
 
 
 def _pose(x: float, z: float, angle: float) -> dict[str, Any]:
-    """A body in the upright plane: its angle turns x to z."""
+    """The 3D pose of a body in the vertical plane; its angle turns from x to z."""
     turned = {"x": 0.0, "y": -math.sin(angle / 2), "z": 0.0, "w": math.cos(angle / 2)}
     return {"position": {"x": x, "y": 0.0, "z": z}, "orientation": turned}
 
 
 def _drawn(outline: Outline) -> tuple[str, Mapping[str, Any]]:
-    """A disc as a sphere, a bar and a polygon as lines."""
+    """The drawing of an outline: a disc becomes a sphere, a bar or polygon becomes lines."""
     if len(outline.corners) == 1:
         return "spheres", {"size": dict.fromkeys("xyz", 2 * outline.radius)}
     return "lines", {
@@ -82,7 +82,7 @@ def _drawn(outline: Outline) -> tuple[str, Mapping[str, Any]]:
     }
 
 
-ATTEMPTS = "/rvmon/attempts"  # the topic of attempts, for the panel of logs
+ATTEMPTS = "/rvmon/attempts"  # the topic of attempts, for the log panel
 
 _PLAIN = re.compile(r"[\w/-]+", re.ASCII)
 _NUMBERS = (Kind.INT, Kind.REAL)
@@ -100,7 +100,7 @@ def topic_of(kind: str, name: str) -> str:
 def foxglove_layout(
     spec: CheckedSpec, requirements: Iterable[str], names: Collection[str], scene: Scene | None
 ) -> dict[str, Any]:
-    """The states of requirements above the numbers that they read above the log of attempts."""
+    """The layout: states of requirements, below them the numbers that they read, then attempts."""
     judged = list(requirements)
     states = [_path("requirements", name, "state", f"{name} {spec.requirements[name].text}")
               for name in judged]  # fmt: skip
@@ -141,7 +141,7 @@ def foxglove_layout(
 
 
 def _view(scene: Scene) -> dict[str, Any]:
-    """A panel that looks at the scene's plane from the side."""
+    """A 3D panel that shows the plane of the scene from the side."""
     left, bottom, right, top = scene.view
     return {
         "topics": {SCENE: {"visible": True}},
@@ -160,7 +160,7 @@ def _view(scene: Scene) -> dict[str, Any]:
 def _numbers(
     spec: CheckedSpec, requirements: Iterable[str], names: Collection[str]
 ) -> Iterator[dict[str, Any]]:
-    """The numbers, and as lines what requirements compare them with."""
+    """The plotted series: the numbers, and the constants that requirements compare them with."""
     judged = [spec.requirements[name] for name in requirements]
     for name, signal in spec.signals.items():
         if name in names and signal.type.kind in _NUMBERS:
@@ -177,7 +177,7 @@ def _numbers(
                 }
 
 
-# By the time of the log, as only attempts carry a stamp of their own.
+# Plotted by receive time, as only attempts carry their own stamp.
 _SHOWN = {"enabled": True, "timestampMethod": "receiveTime"}
 
 

@@ -1,6 +1,6 @@
-"""HTML pages from templates: all text is escaped, and control characters in it are made visible.
+"""HTML pages from templates; all text is escaped, and control characters in it are made visible.
 
-Drawings, whose attributes are computed, are built element by element (`e`) and inserted as they
+Drawings have computed attributes, so they are built element by element (`e`) and inserted as they
 are.
 """
 
@@ -66,7 +66,7 @@ def render(name: str, **values: object) -> str:
 
 
 def component(name: str, *values: object, **options: object) -> Markup:
-    """One macro of `components.html`, to show a fragment of a page alone."""
+    """The output of one macro of `components.html`, to show a fragment of a page alone."""
     macro = getattr(_environment().get_template("components.html").module, name)
     return Markup(macro(*values, **options))  # noqa: S704 - a template escapes
 
@@ -93,7 +93,7 @@ def with_code(sentence: str) -> Markup:
 def data(value: object) -> Markup:
     r"""Data for a script, as JSON that cannot close the enclosing element.
 
-    Strings are escaped as in the text and attributes of the page, so that they compare equal.
+    Control characters in strings are made visible as in the page's text, so that both are equal.
 
     >>> data({"</script>": 1})
     Markup('{"\\u003c/script\\u003e":1}')
@@ -148,7 +148,7 @@ def _as_shown(value: object) -> object:
 
 
 Link = Callable[[str, str, Verdict], str | None]
-"""From group, requirement and verdict, the address of an example of that count."""
+"""Returns the address of an example, given group, requirement and verdict; or `None`."""
 
 
 def table_html(
@@ -158,9 +158,13 @@ def table_html(
     link: Link | None = None,
     witnesses: Mapping[str, str] | None = None,
 ) -> Markup:
-    """A table of counts, with a line per requirement and further tables by label.
+    """A table of counts as HTML, with a line per requirement.
 
-    `link` is the target of a count; `witnesses` are addresses of runs that model checking found.
+    Args:
+        table: the counts.
+        further: tables by label, whose counts are added as further lines of each requirement.
+        link: gives the link of a count.
+        witnesses: addresses of runs found by model checking, by requirement.
     """
     others = further or {}
     text = render(

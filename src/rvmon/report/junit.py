@@ -50,7 +50,14 @@ def junit_xml(
 def case_of(
     name: str, kind: str = "", reasons: Sequence[str] = (), facts: Iterable[tuple[str, str]] = ()
 ) -> ET.Element:
-    """A case: an `error`, a `failure` or `skipped` for some reasons; with facts but empty ones."""
+    """A test case.
+
+    Args:
+        name: of the case.
+        kind: `error`, `failure` or `skipped`; "" if it passed.
+        reasons: the message, then further lines; at least one if `kind` is given.
+        facts: properties, as pairs of name and value; empty ones are left out.
+    """
     case = ET.Element("testcase", name=shown(name))
     stated = [(word, fact) for word, fact in facts if fact]
     properties = ET.SubElement(case, "properties") if stated else case
@@ -71,7 +78,7 @@ def add_suite(root: ET.Element, name: str, cases: Sequence[ET.Element]) -> None:
     attributes = {"name": shown(name), "tests": str(len(cases)), **counts}
     suite = ET.SubElement(root, "testsuite", attributes)
     for case in cases:
-        # CI servers group cases by it.
+        # CI servers group cases by `classname`.
         case.set("classname", shown(name))
         suite.append(case)
 
@@ -85,7 +92,7 @@ def as_text(root: ET.Element) -> str:
 def _case(
     report: Report, name: str, verdict: Verdict, requirement: Requirement, accepted: str
 ) -> ET.Element:
-    """The case of a requirement; `accepted`: why its failure is known, empty: it is not."""
+    """The case of a requirement; `accepted` is the reason why its failure is known, or ""."""
     tags = (("tag", tag) for tag in requirement.tags)
     facts = (("requirement", requirement.text), ("severity", requirement.severity), *tags)
     if verdict is Verdict.PASS:

@@ -1,4 +1,4 @@
-"""The contents of a recording, as page and as tables: each name over time, with its gaps."""
+"""The contents of a recording as HTML page and as text: each name over time, with its gaps."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from rvmon.trace.time import TICKS_PER_SECOND, format_stamp, format_stamped
 
 _BARS = "▁▂▃▄▅▆▇█"
 _WIDTH = 20
-_LONG = 3  # a distance of updates of more than this many usual ones is a gap
+_LONG = 3  # an interval between updates longer than this many usual ones is a gap
 
 _MOST_LABELS = 4
 _LONGEST = 16  # the most characters shown of a label
@@ -28,7 +28,7 @@ _FEW = 3
 
 
 def print_look(profile: Profile, requirements: Sequence[Requirement], printer: Printer) -> None:
-    """Print per requirement the names that it reads, then per topic the others."""
+    """Print the names that each requirement reads, then the others by topic."""
     span = duration_text(profile.end - profile.start)
     start = format_stamp(profile.start)
     printer.sentences(f"{profile.path}: {profile.samples:,} samples in {span}, from {start}")
@@ -78,7 +78,7 @@ def is_constant(column: Column) -> bool:
 
 
 def facts(column: Column) -> tuple[str, str, str, str]:
-    """Kind with unit, rate, longest gap (or ""), and range or labels."""
+    """The kind with unit, the rate, the longest gap or "", and the range or labels."""
     shape = column.shape
     kind = "event" if shape.kind is None else str(shape.kind)
     kind += f" [{shape.unit}]" if shape.unit else ""
@@ -105,9 +105,9 @@ def values(column: Column) -> str:
     if column.shape.kind is Kind.INT and column.low != column.high:
         return f"{column.low:.0f} … {column.high:.0f}"
     if column.low == column.high:
-        # `+ 0` turns the negative zero into zero.
+        # `+ 0` turns negative zero into zero.
         return f"always {column.low + 0:.9g}"
-    # As few digits as tell the ends of the range apart.
+    # As few digits as distinguish the ends of the range.
     digits = next(
         digits
         for digits in (5, 7, 9, 12, 17)
@@ -117,7 +117,7 @@ def values(column: Column) -> str:
 
 
 def spark(column: Column, profile: Profile) -> str:
-    """The course in a few characters, blank where there was no update."""
+    """The course of a signal or event in `_WIDTH` characters, blank where nothing was updated."""
     if is_constant(column):
         return ""
     stretches = column.course.until(profile.end)
@@ -152,7 +152,7 @@ _OPEN = 8  # the number of topics that are unfolded at first
 
 
 def look_page(profile: Profile, requirements: Sequence[Requirement]) -> str:
-    """The page of a recording; names are grouped by requirement first, the others by topic."""
+    """The page of a recording; names are grouped by requirement, the remaining ones by topic."""
     span = profile.end - profile.start
     groups = [
         {
@@ -178,7 +178,7 @@ def look_page(profile: Profile, requirements: Sequence[Requirement]) -> str:
     )
 
 
-_LAST = 0.95  # the greatest place of a mark; a later one would have no room
+_LAST = 0.95  # the greatest place of a mark; the label of a later one would have no room
 
 
 def _marks(start: int, end: int) -> list[tuple[str, str]]:
@@ -206,7 +206,7 @@ def _row(column: Column, title: str, profile: Profile) -> dict[str, object]:
 
 def _drawing(column: Column, profile: Profile) -> ET.Element:
     stretches = column.course.until(profile.end)
-    # At least one stretch wide, else a short recording or outage would not be visible.
+    # At least one stretch wide, so that a short recording or outage is visible.
     wide = max(1.0, (profile.end - profile.start) / column.course.length)
     svg = e("svg", {"viewBox": f"0 0 {wide:.2f} {_HEIGHT}", "preserveAspectRatio": "none"})
     for outage in profile.outages:
@@ -226,10 +226,10 @@ def _drawing(column: Column, profile: Profile) -> ET.Element:
 
 
 def _runs(stretches: Sequence[Stretch]) -> Iterator[tuple[int, list[Stretch]]]:
-    """Maximal runs of stretches without a gap; short silences are bridged."""
+    """The maximal runs of stretches without a gap; short silences are bridged."""
     said = [place for place, stretch in enumerate(stretches) if stretch.low is not None]
     steps = sorted(after - before for before, after in pairwise(said))
-    # The median: silences are longer than the usual step, and would raise a mean.
+    # The median, as silences are longer than the usual step and would raise a mean.
     usual = steps[len(steps) // 2] if steps else 1
     first = 0
     for place in range(1, len(said) + 1):

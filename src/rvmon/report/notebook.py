@@ -30,26 +30,26 @@ _THEMES = (
     r"@media(prefers-color-scheme:dark){:root:not([data-jp-theme-light=true] *){\1}}"
     r":is([data-jp-theme-light=false],.vscode-dark) :root{\1}"
 )
-"""The theme of the notebook takes precedence over that of the system."""
+"""Replacement for `_DARK`: the theme of the notebook takes precedence over the system's."""
 
 _OWN = (
     ":root{padding:.75rem 1rem;border-radius:.5rem}"
     ":root h1{font-size:1.05rem;margin:.25rem 0 .4rem}"
 )
-"""Rules as specific as the notebook's own for headings, so that these later ones win."""
+"""Rules as specific as the notebook's own for headings, so that ours, which come later, win."""
 
 
 def attempt_html(attempt: Attempt) -> str:
     """An attempt with its reason and a timeline of window, trigger, deadline and decision.
 
-    Its signals are not drawn: an attempt keeps only their values at two instants.
+    Signals are not drawn, because an attempt contains only their values at two instants.
     """
     report = report_of([attempt.requirement], [attempt], origin=attempt.origin, end=attempt.decided)
     return _piece(attempt=attempt, facts_of=partial(_facts, report))
 
 
 def report_html(report: Report) -> str:
-    """The attempts of each requirement over the run, then details of those that did not pass."""
+    """The attempts of each requirement over the run, then details of those not passed."""
     view = whole_run(report, report.origin)
     return _piece(
         report=report,
@@ -61,12 +61,12 @@ def report_html(report: Report) -> str:
 
 
 def spec_html(spec: CheckedSpec) -> str:
-    """The requirements: text, severity, tags, and the lines of the file."""
+    """The requirements with text, severity, tags, and their lines of the file."""
     return _piece(spec=spec, spec_lines=spec_lines)
 
 
 def _requirements(report: Report) -> Iterator[tuple[str, str, list[Attempt], int]]:
-    """Per requirement: why it has no attempt, its attempts not passed, how many more there are."""
+    """For each requirement: why it has no attempt, its attempts not passed, the number of more."""
     for name, attempts in shown_attempts(report).items():
         silence = ""
         if report.is_silent(name):
@@ -95,9 +95,9 @@ def _bars(report: Report, name: str, view: View) -> Iterator[tuple[Attempt, str]
 
 
 def _piece(**values: object) -> str:
-    """A fragment of HTML whose style is scoped to it."""
+    """An HTML fragment whose style applies to it alone."""
     style = "".join([verdict_colours(), asset("base.css"), asset("run.css"), _OWN])
-    # A fragment has no root and no body: their rules go to its outermost element.
+    # A fragment has no root or body, so their rules go to its outermost element.
     style = re.sub(r"(?<![.\w-])body\b", ":root", _DARK.sub(_THEMES, style))
     scoped = Markup(f"@scope (.rvmon){{{style.replace(':root', ':scope')}}}")  # noqa: S704 - our own
     none = {"attempt": None, "report": None, "spec": None}

@@ -1,4 +1,4 @@
-"""One attempt on the page of a run: its sentence, lines of the specification, timelines."""
+"""One attempt on the page of a run: headline, lines of the specification, timelines."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from rvmon.trace.sample import Scalar
 from rvmon.verdicts.attempt import Blame
 from rvmon.verdicts.report import Report
 
-DEEPEST = 8  # the greatest depth of a subformula that is indented further
+DEEPEST = 8  # deeper subformulas are not indented further
 
 
 def parts_timeline(panel: Panel, report: Report) -> ET.Element:
-    """A row for the trigger and for each subformula of what is required of an attempt."""
+    """The timeline of subformulas: a row for each of trigger and consequent."""
     assert panel.attempt is not None, "as only these have part_truths"
     end = end_of(report)
     rows: list[Child] = []
@@ -65,14 +65,14 @@ def _row(part_truth: PartTruth, panel: Panel, end: int) -> ET.Element:
 
 
 def _changes(part_truth: PartTruth) -> Course:
-    """The truth of a subformula as the changes of a track; `None` is unknown."""
+    """The truth of a subformula as the changes of a track; `None` means unknown."""
     stretches: Sequence[tuple[int, int, bool]] = sorted(
         [(a, b, True) for a, b in part_truth.true] + [(a, b, False) for a, b in part_truth.false]
     )
     changes: list[tuple[int, Scalar]] = []
     after: int | None = None
     for first, last, value in stretches:
-        # Between two known stretches nothing is known; else the track would hold its last value.
+        # Between known stretches the truth is unknown; without this the track would hold its value.
         if after is not None and first > after:
             changes.append((after, None))
         changes.append((first, value))
@@ -94,10 +94,10 @@ def has_unknown(panel: Panel) -> bool:
 
 
 class SpecLines(NamedTuple):
-    """A requirement's lines of its file."""
+    """The lines of a requirement in its file."""
 
-    place: str  # name of the file, and number of the first of the lines
-    # per line its number, and its text before, within and after the blamed subformula
+    place: str  # file name and number of the first line
+    # of each line its number, and its text before, within and after the blamed subformula
     lines: Sequence[tuple[int, str, str, str]]
 
 
@@ -120,9 +120,10 @@ def _lines(requirement: Requirement, blame: Blame | None) -> Iterator[tuple[int,
     for number, line in enumerate(lines, span.line):
         has_more = number > span.line or len(lines) == 1
         if has_more or not line.endswith(f'"{requirement.text}"'):
-            # Tabs are expanded after the cut, as the blame counts characters of the file.
+            # A first line with only id and text is skipped, as the page has these already. Tabs are
+            # expanded after the cut, as the blame counts characters of the file.
             before, failed, after = (part.expandtabs(4) for part in _marked(line, position, blame))
-            yield number, before, failed, after  # else the page has id and text already
+            yield number, before, failed, after
         position += len(line) + 1
 
 

@@ -1,4 +1,4 @@
-"""Text for people: lines of pieces in styles, sentences and tables, as wide as the terminal."""
+"""Text output for people: styled lines, sentences and tables that fit the terminal."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from typing import TextIO
 from rvmon.diagnostics import RESET, columns_of, wants_colour
 from rvmon.texts import shown, shown_line
 
-Piece = str | tuple[str, str]  # a text, or a text with its style: words of `_CODES`
+Piece = str | tuple[str, str]  # a text, or a text with its style, which is words of `_CODES`
 Line = list[Piece]  # the pieces of a line
-Cell = Piece | Line  # what stands in a table
+Cell = Piece | Line  # the content of a table cell
 
 _Styled = list[tuple[str, str]]
 
@@ -30,19 +30,19 @@ _CODES = {
     "bright_black": "90",
 }
 
-_USUAL_WIDTH = 80  # columns where there is no terminal
+_USUAL_WIDTH = 80  # columns without a terminal
 
 _GAP = "   "
-_NARROWEST = 12  # the least columns of a column that is wrapped
+_NARROWEST = 12  # the least width of a wrapped table column
 
 
 class Printer:
-    """Prints to a terminal or a file, which obeys nothing that a text says.
+    """Prints to a terminal or a file; control characters in texts are written as escapes.
 
     Args:
         file: to print to; default standard output.
         width: columns of a line; default those of the terminal.
-        has_colour: whether styles are shown; default: if the file is a terminal that shows them.
+        has_colour: whether to use styles; default: if the file is a terminal with colours.
     """
 
     def __init__(
@@ -58,12 +58,12 @@ class Printer:
         self._is_below_table = False
 
     def line(self, *pieces: Piece) -> None:
-        """Print pieces, which may be of several lines, and end the line."""
+        """Print pieces, which may contain line breaks, and end the line."""
         self._file.write("".join(map(self._drawn, pieces)) + "\n")
         self._is_below_table = False
 
     def sentences(self, text: str, style: str = "") -> None:
-        """Print a text in lines that fit; its own line breaks are kept."""
+        """Print a text wrapped to the width; its own line breaks are kept."""
         lines = (textwrap.fill(line, self.width) for line in text.split("\n"))
         self.line(("\n".join(lines), style))
 
@@ -78,17 +78,17 @@ class Printer:
         wraps: Collection[int] | None = None,
         is_cut: bool = False,
     ) -> None:
-        """Print a table between blank lines, of which two tables share one.
+        """Print a table between blank lines; adjacent tables share one blank line.
 
         Args:
-            heads: of its columns.
-            rows: of one cell for each column.
-            right: places of the columns that are aligned to the right.
-            over: a line of heads above the others.
-            foot: a row below a blank line.
-            wraps: places of the columns that are wrapped where the table does not fit, if a cell
-                is of one piece; default: the last.
-            is_cut: whether what does not fit is cut there, so that a row is one line.
+            heads: the column heads.
+            rows: each with one cell per column.
+            right: indices of the columns that are aligned to the right.
+            over: a line of heads above `heads`.
+            foot: a last row, separated by a blank line.
+            wraps: indices of the columns that are narrowed if the table does not fit; only cells of
+                one piece are wrapped. Default: the last column.
+            is_cut: whether cells of these columns are cut instead, so that a row is one line.
         """
         head = [_bold(row) for row in (over, heads) if row]
         cells = [*head, *([_cell(cell) for cell in row] for row in rows)]
@@ -109,7 +109,7 @@ class Printer:
         *,
         wraps: Collection[int] = (),
     ) -> None:
-        """Print rows without heads, in columns."""
+        """Print rows in columns without heads; arguments as for `table`."""
         cells = [[_cell(cell) for cell in row] for row in rows]
         for line in chain.from_iterable(self._lines(cells, _GAP[1:], right, wraps)[0]):
             self._file.write(f"{line}\n")
@@ -129,7 +129,7 @@ class Printer:
         *,
         is_cut: bool = False,
     ) -> tuple[list[list[str]], int]:
-        """The lines of each row, and the columns that the table takes."""
+        """The lines of each row, and the width of the table."""
         widths = _widths(rows)
         between = len(gap) * (len(widths) - 1)
         while sum(widths) + between > self.width - 2 and wraps:
@@ -159,11 +159,11 @@ class Printer:
         return f"\x1b[{';'.join(_CODES[word] for word in style.split())}m{shown(text)}{RESET}"
 
 
-TEXT_WIDTH = 100  # columns of a text that is written to a file
+TEXT_WIDTH = 100  # columns of texts written to files
 
 
 def text_of(show: Callable[[Printer], object]) -> str:
-    r"""What a function prints, as a text without styles.
+    r"""The output of a function that prints, as text without styles.
 
     >>> text_of(lambda printer: printer.columns([("R1", "P"), ("R10", "F")]))
     ' R1   P\n R10  F\n'
@@ -202,7 +202,7 @@ def _widths(rows: Sequence[Sequence[_Styled]]) -> list[int]:
 def _folded(
     row: Sequence[_Styled], widths: Sequence[int], wraps: Collection[int], *, is_cut: bool
 ) -> Iterator[Sequence[_Styled]]:
-    """The lines of a row, of which cells of one piece have several where they do not fit."""
+    """The lines of a row; cells in the columns `wraps` that do not fit have several."""
     columns: list[list[_Styled]] = [[cell] for cell in row]
     for place in wraps:
         if len(row[place]) == 1 and _size(row[place]) > widths[place]:
@@ -215,11 +215,11 @@ def _folded(
 
 
 def _terminal_width() -> int:
-    """The columns of the terminal, also where only what is typed or complained of is at one."""
+    """The columns of the terminal to which any of the three standard streams is connected."""
     given = os.environ.get("COLUMNS", "")
     if given.isascii() and given.isdigit():
         return int(given) or _USUAL_WIDTH
     for stream in range(3):
-        with suppress(OSError):  # it is closed, or none
+        with suppress(OSError):  # the stream is closed, or no terminal
             return os.get_terminal_size(stream).columns or _USUAL_WIDTH
     return _USUAL_WIDTH

@@ -1,4 +1,4 @@
-"""The page of one run: its attempts with reasons, timelines and the command to replay it."""
+"""The page of one run: its attempts with reasons and timelines, and the command to repeat it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ MILLISECOND = 1_000_000  # a millisecond in ticks
 def scene_svg(scene: Scene, instant: int) -> ET.Element:
     """Draw a scene at an instant (ticks)."""
     left, bottom, right, top = (round(edge * UNITS) for edge in scene.view)
-    # In SVG y grows downwards: every z is negated, and every angle with it.
+    # In SVG, y grows downwards, so every z and every angle is negated.
     drawing = e(
         "svg",
         {"viewBox": f"{left} {-top} {right - left} {top - bottom}", "role": "img"},
@@ -86,8 +86,8 @@ MOST_DRAWN = 5_000  # the most attempts drawn per requirement and verdict in the
 def run_page(content: RunPage) -> str:
     """The page of a run as HTML.
 
-    Without scripts it shows all attempts below each other; the script shows one at a time, moves
-    the cursor and plays the scene. An address that ends in `#R2` opens on requirement R2.
+    Without scripts it shows all attempts, one below the other. The script shows one at a time,
+    moves the cursor and plays the scene. An address that ends in `#R2` opens on requirement R2.
     """
     report, samples, scene = content.run.report, content.run.samples, content.scene
     panels = panels_of(content)
@@ -159,11 +159,11 @@ def _siblings(panels: Sequence[Panel], report: Report, panel: Panel) -> tuple[li
 
 
 def _bars(report: Report, name: str, view: View) -> Iterator[tuple[float, float, Verdict]]:
-    """Left edge, width and verdict of bars over the run; where attempts overlap, the worst."""
+    """The bars over the run: left edge, width, and the worst verdict of overlapping attempts."""
     import numpy as np
 
     places: list[Verdict | None] = [None] * PLACES
-    # The worst last, as a later one is drawn over an earlier one.
+    # The worst verdict last, as it overwrites the others.
     for verdict in (Verdict.PASS, Verdict.INCONCLUSIVE, Verdict.FAIL):
         spans = [
             (one.triggered, view.end if one.decided is None else one.decided)
@@ -172,7 +172,7 @@ def _bars(report: Report, name: str, view: View) -> Iterator[tuple[float, float,
         instants = np.array(spans, np.int64).reshape(-1, 2).T
         shares = (instants - view.start) / (view.end - view.start)
         first, last = np.clip(shares * PLACES, 0, PLACES - 1).astype(np.int64)
-        # How many begin at each place, and how many ended at the place before.
+        # At each place, the attempts that start there minus those that ended at the place before.
         changes = np.bincount(first, minlength=PLACES + 1)
         changes -= np.bincount(last + 1, minlength=PLACES + 1)
         for place in np.flatnonzero(changes.cumsum()).tolist():
@@ -219,7 +219,7 @@ def _panel_data(panel: Panel, origin: int) -> dict[str, object]:
 
 def _track_data(track: Track, view: View, origin: int) -> dict[str, object]:
     inside = track.between(view.start + 1, view.end)
-    # Only for the cursor's numbers: the drawing keeps extremes, which are lost here.
+    # Thinned without regard to extremes: the cursor's numbers need none, the drawing has its own.
     inside = inside[:: len(inside) // READ_OUT + 1]
     changes = [(view.start, track.value_at(view.start)), *inside]
     return {

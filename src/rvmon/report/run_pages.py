@@ -1,4 +1,4 @@
-"""Writes the pages of judged recordings, and their index."""
+"""The pages of judged recordings, and their index."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _GROUPS = {
     "NT": "not triggered",
     "P": "pass",
 }
-"""The groups of the index, in order: a recording belongs to that of its worst verdict."""
+"""The groups of the index in order; a recording belongs to the group of its worst verdict."""
 
 
 class Listed(Struct, frozen=True):
@@ -47,7 +47,7 @@ class Listed(Struct, frozen=True):
 
 
 class _Row(NamedTuple):
-    """A recording's row: its group, the text that a search matches, and a cell per requirement."""
+    """The row of a recording: its group, the text for searches, and a cell per requirement."""
 
     one: Listed
     group: str
@@ -126,7 +126,7 @@ def _row(listed: Listed, spec: CheckedSpec, known: KnownFailures) -> _Row:
 
 
 def _cell(report: Report, requirement: str, known: str) -> tuple[str, Verdict, str | None, bool]:
-    """The requirement, its verdict with the reason, and whether its failure is known."""
+    """A cell: requirement, verdict, reason, and whether its failure is known."""
     verdict = report.verdicts[requirement]
     reason = f"known: {known}" if known else None
     if reason is None and verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE):
@@ -136,7 +136,7 @@ def _cell(report: Report, requirement: str, known: str) -> tuple[str, Verdict, s
 
 
 COMPARED = 10
-"""The most recordings searched for a nearest passing attempt; each is read again for it."""
+"""The most recordings searched for a nearest passing attempt; each has to be read again."""
 
 INDEX = "index.html"
 
@@ -153,12 +153,21 @@ def write_run_pages(
 ) -> list[Path]:
     """Write a page per recording, and `index.html` if there are several.
 
-    `read` gives the samples of a recording, `command` what judges it again, `broken` the errors of
-    those that could not be judged.
+    Args:
+        folder: receives the pages; created if needed.
+        spec: the specification.
+        reports: one per recording.
+        read: returns the samples of a recording, given its name.
+        command: returns the command line that judges a recording again, given its name.
+        broken: names and errors of the recordings that could not be judged.
+        known: the known failures.
+
+    Returns:
+        The written files; the index, if any, is the last.
     """
     output_folder(folder)
     passing = [report for report in reports if Verdict.PASS in report.verdicts.values()]
-    # Only these are held together with their samples; every other recording is read for its page.
+    # Only these keep their samples open together; any other recording is read for its page alone.
     others = [_judged(report, read) for report in passing[:COMPARED]]
     several = len(reports) + len(broken) > 1
     names = _file_names([report.trace for report in reports])

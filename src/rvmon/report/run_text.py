@@ -21,7 +21,7 @@ from rvmon.verdicts.run_coverage import CoveredGroup
 
 
 def together(several: Sequence[Sequence[CoveredGroup]]) -> list[CoveredGroup]:
-    """The sum of the coverage of several runs by one specification, without first instants."""
+    """The summed coverage of several runs of one specification, without first instants."""
     summed = []
     for groups in zip(*several, strict=True):
         alike = zip(*(group.bins for group in groups), strict=True)
@@ -31,7 +31,7 @@ def together(several: Sequence[Sequence[CoveredGroup]]) -> list[CoveredGroup]:
 
 
 def coverage_lines(groups: Sequence[CoveredGroup]) -> Iterator[str]:
-    """Per group, a line with the hits of its bins, and one with its holes if it has any.
+    """For each group, a line with the hits of its bins, and one with its holes if it has any.
 
     >>> from rvmon.language.checked.properties import BinKind
     >>> from rvmon.verdicts.run_coverage import CoveredBin
@@ -61,9 +61,9 @@ def coverage_lines(groups: Sequence[CoveredGroup]) -> Iterator[str]:
 def print_reports(
     reports: Sequence[Report], spec: CheckedSpec, *, counts_only: bool = False
 ) -> None:
-    """Print the verdicts on each recording, and for several recordings their counts.
+    """Print the verdicts on each recording; for several recordings, also the counts of verdicts.
 
-    Every F comes with cause, window and line of the specification, every I with its obligation.
+    Every F is shown with cause, window and line of the specification, every I with its obligation.
     """
     printer = Printer()
     for report in () if counts_only else reports:
@@ -135,7 +135,7 @@ def _print_verdicts(report: Report, spec: CheckedSpec, printer: Printer) -> None
 
 
 def _least_robustness(report: Report) -> dict[str, str]:
-    """By requirement the least robustness of its attempts, where it was measured."""
+    """The least robustness of each requirement's attempts, if it was measured."""
     if isinstance(report.attempts, LazyAttempts):
         return {}  # robustness was not measured
     least: dict[str, float] = {}

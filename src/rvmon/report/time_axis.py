@@ -14,13 +14,13 @@ from rvmon.verdicts.report import Report
 MARGIN = 0.2  # the margin on either side, relative to the attempt's length
 
 SMALLEST_MARGIN = TICKS_PER_SECOND
-"""The least margin, for attempts that are decided at once; less if the run is short."""
+"""The least margin in ticks, for attempts that are decided at once; less if the run is short."""
 
 STEPS = (1, 2, 5)
 
 _SECONDS = re.compile(r"\b(\d+\.\d+) s\b")
 
-SHOWN_DIGITS = 4  # digits of an instant: its last one is 1/1000 to 1/10000 of the view
+SHOWN_DIGITS = 4  # the last shown digit of an instant is 1/1000 to 1/10000 of the view
 
 
 class View(Struct, frozen=True):
@@ -37,20 +37,20 @@ class View(Struct, frozen=True):
 def view_of(attempt: Attempt, report: Report, late: int | None = None) -> View:
     """The view from before the trigger to after the decision and the deadline.
 
-    A late response at `late` (ticks) is in view if it is near.
+    A late response at `late` (ticks) is included if it is near.
     """
     decided = report.end if attempt.decided is None else attempt.decided
     blame = () if attempt.blame is None else (*attempt.blame.window, *attempt.blame.at)
     shown = (attempt.triggered, decided, attempt.deadline, *blame)
     instants = [instant for instant in shown if instant is not None]
     first, last = min(instants), max(instants)
-    # A response later than that would squeeze the attempt into less than half of the view: the
-    # label points to it instead.
+    # A later response would squeeze the attempt into less than half of the view; then its label
+    # points out of the view instead.
     if late is not None and late - last <= last - first:
         last = max(last, late)
     length = 0 if report.end is None else max(report.end - report.origin, 0)
     margin = max(round((last - first) * MARGIN), min(SMALLEST_MARGIN, length // 4), 2)
-    # A quarter of the margin beyond the run marks where it begins and ends.
+    # A quarter of the margin beyond the run makes its start and end visible.
     little = margin // 4
     start = max(first - margin, min(report.origin, first) - little)
     if report.end is None:
@@ -81,7 +81,7 @@ def round_instants(view: View, origin: int, count: int = 6) -> list[int]:
 def moment(instant: int, origin: int, view: View) -> str:
     """An instant as seconds since the origin, rounded to what can be distinguished in a view.
 
-    So the one tick between a missed deadline and its decision is not shown.
+    This hides the one tick between a missed deadline and its decision.
 
     >>> moment(3_234_567_891, 0, View(0, 10_000_000_000)), moment(17, 5, View(0, 20))
     ('3.235 s', '12 ns')

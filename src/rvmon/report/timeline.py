@@ -46,8 +46,8 @@ def track_row(
 ) -> ET.Element:
     """Draw one track.
 
-    `blamed` are instants of samples, and `reference` is the same signal in another run, drawn
-    behind.
+    `blamed` are the instants of offending samples; `reference` is the same signal in another run,
+    drawn in the background.
     """
     plot = e("div", {"class": f"plot {track.kind.value}"})
     if track.absent:
@@ -73,7 +73,7 @@ def track_row(
 def truth_row(label: ET.Element, track: Track, view: View, end: int) -> ET.Element:
     """Draw when a formula was true."""
     plot = e("div", {"class": "plot switch truth"})
-    # A truth holds over whole ticks, so that of the last one ends a tick later.
+    # A truth holds over whole ticks, so that of the last tick ends one tick later.
     _add_stretches(plot, stretches(track, view, end + 1))
     return e("div", {"class": "row"}, e("div", {"class": "name"}, label), plot)
 
@@ -99,7 +99,7 @@ def _add_stretches(plot: ET.Element, pieces: Sequence[Stretch], extra: str = "")
         if piece.busy:
             plot.append(e("div", {"class": f"busy{extra}", "title": "changes too fast", **place}))
         elif piece.value is None:
-            # Where the reference is unknown, hatching would hide what is known of this run.
+            # Hatching where the reference is unknown would hide known values of this run.
             if not extra:
                 plot.append(_unknown(piece.left, width))
         elif piece.value is True:
@@ -132,7 +132,7 @@ def _add_number(
             drawing.append(e("polyline", {"class": kind, "points": places}))
     plot.append(drawing)
     constants = {threshold.value for threshold in track.thresholds}
-    # A threshold has a label of its own, at the same height.
+    # A bound equal to a threshold needs no label: that of the threshold is at the same height.
     for bound in sorted({low, high} - constants):
         top = share_of(bound, highest, lowest)
         plot.append(e("span", {"class": "scale", "style": f"top:{top:.2%}"}, f"{bound:.3g}"))
@@ -142,7 +142,7 @@ def _add_number(
     for threshold in track.thresholds:
         top = share_of(threshold.value, highest, lowest)
         text = f"{SIGNS.get(threshold.op, threshold.op)} {threshold.value:g} {track.unit}".rstrip()
-        # Where the line runs above the threshold, a label above it would cover the line.
+        # If the line runs above the threshold, a label above it would cover the line.
         side = " under" if top < LOWEST_UNDER and _is_above(pieces, threshold.value) else ""
         line = {"class": f"threshold{side}", "style": f"top:{top:.2%}"}
         plot.append(e("div", line, e("span", None, text)))
@@ -167,7 +167,7 @@ def _range(pieces: Sequence[Stretch], track: Track) -> tuple[float, float]:
     low, high = min(values, default=0.0), max(values, default=1.0)
     if low < high:
         return low, high
-    around = max(1.0, abs(low) * EDGE)  # 1 would be lost beside a large number
+    around = max(1.0, abs(low) * EDGE)  # relative, as adding 1 to a large number is no change
     return max(low - around, -MOST), min(high + around, MOST)
 
 
@@ -184,11 +184,11 @@ def _unknown(left: float, width: float) -> ET.Element:
     return e("div", {"class": "unknown", "title": "unknown", "style": place_of(left, width)})
 
 
-LABEL = 0.44  # the share of the width that a label takes on a phone; overlapping ones get own rows
+LABEL = 0.44  # the share of the width that a label takes on a phone
 
 
 class ReferenceAttempt(Struct, frozen=True):
-    """The nearest passing attempt, its instants (ticks) moved to the trigger of the failed one."""
+    """The nearest passing attempt, moved in time so that both triggers coincide; in ticks."""
 
     name: str
     number: int
@@ -218,7 +218,7 @@ def timeline(
         end: the last instant of the run, ticks.
         blamed: the names that the blamed subformula reads.
         late: the instant of a response after the deadline, ticks.
-        reference: drawn behind the tracks, dashed.
+        reference: an attempt of another run, drawn dashed in the background.
     """
     references = {track.name: track for track in reference.tracks} if reference else {}
     rows: list[Child] = []
@@ -235,7 +235,7 @@ def timeline(
 
 
 def _offending(attempt: Attempt | None) -> tuple[int, ...]:
-    """The blamed instants, moved into the window if the value was there before it."""
+    """The blamed instants; those of a value from before the window are moved to its start."""
     if attempt is None or attempt.blame is None:
         return ()
     return tuple(max(instant, attempt.blame.window[0]) for instant in attempt.blame.at)
@@ -244,7 +244,7 @@ def _offending(attempt: Attempt | None) -> tuple[int, ...]:
 def _obligation(
     attempt: Attempt, view: View, origin: int, end: int, late: int | None
 ) -> ET.Element:
-    """The row with the window of the obligation, and labels of its instants."""
+    """The row with the window of the obligation and the labels of its instants."""
     first, last = _window(attempt)
     if last is None:
         last = attempt.decided  # the decision ended the obligation
@@ -268,7 +268,7 @@ def _window(attempt: Attempt) -> tuple[int, int | None]:
 def _labels(
     attempt: Attempt, view: View, origin: int, end: int, late: int | None
 ) -> list[tuple[ET.Element, int]]:
-    """Labels of trigger, deadline, decision, late arrival: each in the first row with room."""
+    """The labels of trigger, deadline, decision and late response, each with its row."""
     wanted = [(attempt.triggered, "trigger", "▼", "trigger")]
     deadline = _window(attempt)[1]
     if deadline is not None and deadline != attempt.triggered:
@@ -288,7 +288,7 @@ def _labels(
     labels = []
     for instant, kind, sign, word in wanted:
         place = min(max(view.fraction(instant), 0.0), 1.0)
-        to_left = place > 1 - LABEL  # else the page's edge would cut its words off
+        to_left = place > 1 - LABEL  # to the right, the edge of the page would cut its words off
         left, right = (place - LABEL, place) if to_left else (place, place + LABEL)
         row = next(
             (i for i, used in enumerate(taken) if all(right <= a or left >= b for a, b in used)),
@@ -313,7 +313,7 @@ def _labels(
 
 
 def guides_of(attempt: Attempt, view: View, end: int, late: int | None) -> list[ET.Element]:
-    """Lines through all rows at trigger, deadline, decision and late arrival."""
+    """The lines through all rows at trigger, deadline, decision and late response."""
     wanted = [("trigger", attempt.triggered), ("deadline", _window(attempt)[1]), ("late", late)]
     wanted.append(("end", end) if attempt.decided is None else ("decision", attempt.decided))
     return [

@@ -1,4 +1,4 @@
-"""The trace matrix: by requirement and source, the recordings or tests that show it."""
+"""The trace matrix: for each requirement and its source, the recordings or tests that show it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from rvmon.verdicts import Verdict, fold
 from rvmon.verdicts.serialise import VerdictRow
 from rvmon.verdicts.table_file import csv_table
 
-LISTED = 100  # the most recordings or tests per verdict named on the page; the table has all
+LISTED = 100  # the most recordings or tests per verdict named on the page; the CSV names all
 Row = Mapping[str, str]  # a row of the verdicts, by column
 
 
@@ -28,16 +28,16 @@ class Traced(NamedTuple):
     text: str  # the text of the requirement
     source: str  # the clause it comes from
     by: str = ""  # the recording, or robot and test; "" if nothing judges the requirement
-    verdict: str = ""  # its letter; "" if there is none
+    verdict: str = ""  # the letter of the verdict; "" if there is none
     reason: str = ""  # the reason of the first failure, or the error of the recording or test
     planted_fault: str = ""  # the fault planted in the robot for this test; else ""
 
 
 def rows_by_item(verdicts: bytes) -> dict[str, list[Row]]:
-    """The rows of a CSV file of verdicts, by recording, or by robot and test of a campaign.
+    """The rows of a CSV file of verdicts by recording or, for a campaign, by robot and test.
 
     Raises:
-        ValueError, csv.Error: the bytes are no such file.
+        ValueError, csv.Error: the bytes are not such a file.
     """
     rows = csv.reader(io.StringIO(verdicts.decode("utf-8"), newline=""), strict=True)
     if tuple(next(rows, ())) != VerdictRow._fields:
@@ -53,7 +53,11 @@ def trace_matrix(
 ) -> list[Traced]:
     """The recordings and tests that show each requirement, in the order of the specification.
 
-    `specs` are by robot, of recordings by an empty name; `planted` has the faults of tests.
+    `specs` are by robot; for recordings, the only key is "". `planted` are the planted faults by
+    robot and test.
+
+    Raises:
+        ValueError: a row has an unknown verdict.
     """
     matrix: list[Traced] = []
     for robot, spec in specs.items():
@@ -62,7 +66,7 @@ def trace_matrix(
         for item in items_of_robot:
             for row in items[item]:
                 by_requirement.setdefault(row["requirement"], {}).setdefault(item, []).append(row)
-        # Without a requirement a row says that there are no verdicts, or what was hit and must not.
+        # Rows without a requirement are errors of recordings, or illegal hits.
         other = by_requirement.get("", {})
         broken = {item for item, rows in other.items() if not all(row["verdict"] for row in rows)}
         for name, requirement in spec.requirements.items():
@@ -83,7 +87,7 @@ def trace_matrix(
 
 
 def _folded(rows: Sequence[Row], is_broken: bool, first: Row) -> tuple[str, str]:
-    """The folded verdict of rows, and the reason of a failure or the error."""
+    """The folded verdict of rows, and the reason of the first failure or the error."""
     verdict = "" if is_broken else fold(Verdict(row["verdict"]) for row in rows).value
     failed = next((row["reason"] for row in rows if row["verdict"] == "F"), "")
     # A broken recording has one row, which carries its error.
@@ -96,7 +100,7 @@ def matrix_csv(matrix: Sequence[Traced]) -> bytes:
 
 
 def matrix_page(title: str, facts: Mapping[str, str], matrix: Sequence[Traced]) -> bytes:
-    """The matrix as a page that needs nothing but itself; facts that are empty are left out."""
+    """The matrix as a self-contained HTML page; empty facts are left out."""
     sections: dict[str, list[_Row]] = {}
     for (robot, _), rows in groupby(matrix, key=lambda one: (one.robot, one.requirement)):
         sections.setdefault(robot, []).append(_row(list(rows)))
@@ -109,7 +113,7 @@ def matrix_page(title: str, facts: Mapping[str, str], matrix: Sequence[Traced]) 
 
 
 class _Lines(NamedTuple):
-    """The recordings or tests with one verdict: their number, and the first of them."""
+    """The recordings or tests with one verdict: their number, and the first `LISTED`."""
 
     heading: str
     size: int

@@ -1,4 +1,4 @@
-"""Tracks: the signals and events of a requirement over time, for drawing; the scene, too."""
+"""Tracks: the signals and events of a requirement over time, for drawing; also scenes."""
 
 from __future__ import annotations
 
@@ -52,9 +52,9 @@ def names_of_requirement(requirement: Requirement) -> tuple[str, ...]:
 
 
 def blamed_names(requirement: Requirement, blame: Blame) -> frozenset[str]:
-    """The names that the blamed subformula reads; if it has no place, those of the consequent."""
+    """The names that the blamed subformula reads; if none are found, those of the consequent."""
     parts = subformulas(requirement.consequent)
-    # Only atoms read names; the blame may name an operator, then all atoms below it count.
+    # Only atoms read names. If the blame names an operator, all atoms below it count.
     required = [part for part in parts if not isinstance(part, Unary | Binary | Amount)]
     failed = [
         atom
@@ -109,15 +109,15 @@ class Track(Struct, frozen=True):
 
     name: str  # as declared
     kind: TrackKind  # of drawing
-    # `(ticks, value)` in order: a signal has the value from then on (`None`: unknown); an event
-    # occurred then (`None`: perhaps)
+    # `(ticks, value)` in order: the instant from which a signal has the value (`None`: unknown), or
+    # at which an event occurred (`None`: perhaps)
     changes: Course
     unit: str = ""  # of a number
     thresholds: tuple[Threshold, ...] = ()  # the constants that the requirement compares it with
     absent: bool = False  # whether it has no source, so that it is unknown throughout
 
     def value_at(self, instant: int) -> Scalar:
-        """A signal's value at an instant; `None` where it is unknown."""
+        """A signal's value at an instant; `None` if it is unknown."""
         index = self.changes.behind(instant)
         return self.changes[index - 1][1] if index else None
 
@@ -127,7 +127,7 @@ class Track(Struct, frozen=True):
 
 
 def signal_texts(tracks: Iterable[Track], instant: int) -> dict[str, str]:
-    """By signal, its value at an instant with its unit; events are left out.
+    """The value of each signal at an instant, with its unit; events are left out.
 
     >>> force = Track("force", TrackKind.NUMBER, Course.of([(0, 40.5), (9, None)]), "N")
     >>> signal_texts([force], 3), signal_texts([force], 9)
@@ -148,9 +148,9 @@ class Stretch(Struct, frozen=True):
     """A stretch of a view over which a signal has one value."""
 
     left: float  # as a fraction of the view, 0 to 1
-    right: float  # likewise
-    value: Scalar  # `None` where it is unknown
-    busy: bool = False  # whether it replaces several stretches that are too short to be drawn
+    right: float  # as a fraction of the view, 0 to 1
+    value: Scalar  # `None` if it is unknown
+    busy: bool = False  # whether it replaces several stretches that are too short to draw
 
 
 def stretches(track: Track, view: View, end: int) -> list[Stretch]:
@@ -168,7 +168,7 @@ def stretches(track: Track, view: View, end: int) -> list[Stretch]:
 
 
 def readable(pieces: Sequence[Stretch]) -> list[Stretch]:
-    """The stretches with neighbours that are too narrow to be seen merged into busy ones."""
+    """The stretches, with adjacent ones that are too narrow to see merged into a busy one."""
     if len(pieces) <= PLACES:
         return list(pieces)
     joined: list[Stretch] = []
@@ -182,7 +182,7 @@ def readable(pieces: Sequence[Stretch]) -> list[Stretch]:
 
 
 def occurrences(track: Track, view: View) -> list[tuple[float, Scalar]]:
-    """Places in a view at which an event occurred (`True`), or may have (`None`)."""
+    """The places in a view at which an event occurred (`True`) or may have (`None`)."""
     inside = [(view.fraction(t), value) for t, value in track.between(view.start, view.end)]
     if len(inside) <= PLACES:
         return inside
@@ -214,11 +214,11 @@ def share_of(value: float, first: float, last: float) -> float:
 
 
 def _outlined(points: Sequence[Point]) -> list[Point]:
-    """Per place the first, last, lowest and highest point, so that no peak is lost."""
+    """The first, last, lowest and highest point of each place, so that no peak is lost."""
     kept: list[Point] = []
     for _, group in groupby(points, key=lambda point: int(point[0] * PLACES)):
         same_place = list(group)
-        # The first and the last keep the joints with the neighbours.
+        # The first and the last keep the connections with the neighbours.
         extremes = [of(same_place, key=itemgetter(1)) for of in (min, max)]
         kept.extend(sorted({same_place[0], *extremes, same_place[-1]}))
     return kept

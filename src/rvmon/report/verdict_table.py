@@ -1,4 +1,4 @@
-"""Tables of verdicts of many runs: their data, as CSV, LaTeX and text."""
+"""Tables of verdicts of many runs: their data, and their output as CSV, LaTeX and text."""
 
 from __future__ import annotations
 
@@ -54,9 +54,9 @@ _FORMULA = ("=", "+", "-", "@")
 
 
 def tables_csv(tables: Mapping[str, VerdictTable]) -> str:
-    """Several tables, by their names in the first column, as one CSV text; `plain` escapes names.
+    """Several tables as one CSV text, with their names in the first column.
 
-    Bounds of intervals are shares from 0 to 1, empty for a table that shows none.
+    Bounds of intervals are shares from 0 to 1; they are empty for a table without intervals.
     """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
@@ -83,7 +83,7 @@ def _bounds(counts: Sequence[int], runs: int) -> list[str]:
 
 
 def plain(name: str) -> str:
-    """A name that no spreadsheet takes for a formula: an apostrophe is put before such a one."""
+    """A name that no spreadsheet takes for a formula; an apostrophe is added where needed."""
     # `shown_line` escapes tabs and line ends, which could also start a formula or end a row.
     text = shown_line(name)
     return f"'{text}" if text.startswith(_FORMULA) else text
@@ -91,7 +91,7 @@ def plain(name: str) -> str:
 
 ZERO = "·"  # the sign for a count of 0, so that other counts stand out
 WIDTH = 4  # the least width of a column of counts, in characters
-WIDE = 7  # the same with intervals
+WIDE = 7  # the least width of a column of counts with intervals
 ABREAST = 14  # the characters per verdict that the groups side by side may take within 80 columns
 
 
@@ -100,12 +100,12 @@ def print_table(
 ) -> None:
     """Print a table of verdicts, as many groups side by side as fit.
 
-    `further` has by label tables whose counts stand in further lines of each row.
+    `further` are tables by label; their counts are printed in further lines of each row.
     """
     further = further or {}
     width = _width(table, *further.values())
     abreast = max(1, ABREAST // width)
-    widths = (width - 1, *[width] * (len(Verdict) - 1))  # a gap stands before the first
+    widths = (width - 1, *[width] * (len(Verdict) - 1))  # the gap is part of the first column
     if table.title:
         printer.sentences(table.title, "bold")
     for first in range(0, len(table.groups), abreast):
@@ -143,7 +143,7 @@ def _print_groups(
         for label, verdict_table in further.items()
         if shown & {group.name for group in verdict_table.groups}
     }
-    # Only beside the first groups, as it does not depend on the group.
+    # Only beside the first groups, as model checking does not depend on the group.
     tables = (table, *others.values())
     has_checked = with_checked and any(one.checked for one in tables)
     letters = _in_columns(Verdict, widths)
@@ -168,7 +168,7 @@ def _print_groups(
 def _count_lines(
     table: VerdictTable, group: RunGroup, name: str, widths: Sequence[int], dim: str
 ) -> tuple[Line, Piece]:
-    """The counts of a group, and below them the intervals of their shares."""
+    """The counts of a group, and the line below with the intervals of their shares."""
     counts = table.counts(group.name, name)
     if counts is None:
         return [], ""

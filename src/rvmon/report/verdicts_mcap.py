@@ -1,4 +1,4 @@
-"""Verdicts on a recording as an MCAP file, with a layout by which Foxglove shows it.
+"""Verdicts on a recording as an MCAP file, with a layout for Foxglove.
 
 Source: the MCAP specification, https://mcap.dev/spec; the schema `foxglove.Log`,
 https://docs.foxglove.dev/docs/visualization/message-schemas/log.
@@ -37,7 +37,7 @@ from rvmon.verdicts.attempt import Attempt
 from rvmon.verdicts.report import Report
 
 _LEVELS = {Verdict.PASS: 2, Verdict.INCONCLUSIVE: 3, Verdict.FAIL: 4}
-"""As of `foxglove.Log`: information, warning, error."""
+"""The levels of `foxglove.Log`: information, warning, error."""
 
 _TYPES = {Kind.BOOL: "boolean", Kind.INT: "integer", Kind.REAL: "number", Kind.LABEL: "string"}
 
@@ -50,7 +50,11 @@ _Message = tuple[int, str, Mapping[str, Any]]  # ticks, topic, content
 
 
 def refuse_mcap(path: str) -> None:
-    """Say, before anything is judged, that verdicts cannot be written as MCAP."""
+    """Refuse, before anything is judged, a path or installation that cannot write MCAP.
+
+    Raises:
+        RvmonError: the suffix is another one, or mcap is not installed.
+    """
     if not path.endswith(".mcap"):
         raise RvmonError(f"cannot write {path}: the name of an MCAP file ends in .mcap")
     if find_spec("mcap") is None:
@@ -58,7 +62,7 @@ def refuse_mcap(path: str) -> None:
 
 
 def layout_path(path: str) -> str:
-    """The file of the layout, next to that of the verdicts."""
+    """The path of the layout file, next to that of the verdicts."""
     return f"{path}.layout.json"
 
 
@@ -69,9 +73,9 @@ def write_verdicts(
     samples: Iterable[Sample],
     scene: Scene | None = None,
 ) -> None:
-    """Write states of requirements, attempts and values over time, and the layout next to it.
+    """Write states of requirements, attempts and values over time, and the layout file.
 
-    Without samples, which go up to the end, values are left out.
+    `samples` are those up to the end of the report; if there are none, values are left out.
 
     Raises:
         RvmonError: a file cannot be written, or an instant is before 1970.
@@ -94,7 +98,7 @@ def write_verdicts(
     frames = [] if scene is None else [(t, SCENE, one) for t, one in scene_updates(scene)]
     values = _values(spec, recorded, names)
     messages = merge(states, _attempts(spec, report), values, frames, key=itemgetter(0))
-    # By topic the name of its schema, and the types of its fields.
+    # For each topic, the name of its schema and the types of its fields.
     schemas: dict[str, tuple[str, Mapping[str, str]]] = {ATTEMPTS: ("foxglove.Log", _ATTEMPT)}
     for name in report.verdicts:
         schemas[topic_of("requirements", name)] = "rvmon.Requirement", _STATE
@@ -126,7 +130,7 @@ def _value_schemas(
 
 
 def _states(report: Report, begin: int) -> Iterator[_Message]:
-    """The state of each requirement: at the beginning, and at each change."""
+    """The state of each requirement at the start and at each change."""
     changes: dict[str, dict[int, list[tuple[int, Verdict | None]]]] = {}
     end = report.end or 0
     for attempt in report.attempts:
@@ -152,12 +156,12 @@ def _states(report: Report, begin: int) -> Iterator[_Message]:
 
 
 def _settled(attempt: Attempt, end: int) -> int:
-    """The instant of its decision, or the end of the recording; never before its trigger."""
+    """The decision instant of an attempt, else the end of the recording; not before its trigger."""
     return max(attempt.triggered, end if attempt.decided is None else attempt.decided)
 
 
 def _attempts(spec: CheckedSpec, report: Report) -> list[_Message]:
-    """An entry of the log for each attempt, when it was decided."""
+    """A log entry for each attempt at its decision."""
     messages: list[_Message] = []
     for attempt in report.attempts:
         span = spec.requirements[attempt.requirement].span
@@ -182,7 +186,7 @@ def _attempts(spec: CheckedSpec, report: Report) -> list[_Message]:
 def _values(
     spec: CheckedSpec, samples: Iterable[Sample], names: Collection[str]
 ) -> Iterator[_Message]:
-    """The values of what requirements read."""
+    """The values of the names that requirements read."""
     for sample in samples:
         for name, value in sample.values.items():
             if name not in names:
@@ -196,7 +200,7 @@ def _values(
 
 
 def _value_message(value: object) -> dict[str, object]:
-    """A value of a signal; JSON has no NaN, and no infinity."""
+    """The message for a value of a signal; JSON has no NaN and no infinity."""
     if value is None or value != value:
         return {"known": False}
     # An infinity is known, but nothing can be plotted for it.

@@ -1,4 +1,4 @@
-"""The dissection of an attempt, drawn in the terminal."""
+"""The explanation of an attempt by its subformulas, as text for a terminal."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ LEGEND = (
 def why_lines(
     breakdown: Breakdown, requirement: Requirement, values: Mapping[str, Sequence[str]]
 ) -> Iterator[Line]:
-    """The verdict with its reason, a row for the trigger and each part required, and values."""
+    """The verdict with its reason, a row per subformula of trigger and consequent, and values."""
     attempt = breakdown.attempt
     yield [(f"{attempt.name}  ", "bold"), wording.verdict_text(attempt.verdict)]
     for line in _sentences(breakdown, requirement):
@@ -51,7 +51,7 @@ def why_lines(
 def attempt_values(
     tracks: Sequence[Track], attempt: Attempt, last: int
 ) -> dict[str, Sequence[str]]:
-    """By signal, its value at the trigger, and at the last instant (ticks) if that is later."""
+    """The value of each signal at the trigger and, if it is later, at `last` (ticks)."""
     texts = [signal_texts(tracks, t) for t in sorted({attempt.triggered, last})]
     return {name: [one[name] for one in texts] for name in texts[0]}
 
@@ -112,14 +112,14 @@ def _cell(part_truth: PartTruth, breakdown: Breakdown, column: int) -> str:
     if true and not false:
         return TRUE
     if not true:
-        # False only if it is false throughout the column: an unknown tick leaves it unknown.
+        # One unknown tick makes the column unknown: it must be false throughout.
         known = any(a <= low and high <= b for a, b in part_truth.false)
         return FALSE if known else UNKNOWN
     if _inside(part_truth.true, low, high):
         return PULSE
     if _inside(part_truth.false, low, high):
         return DIP
-    # Both reach out of the column, each at an end of its own.
+    # Both truths extend beyond the column, one at each end.
     return FALLS if _touches(part_truth.true, low, low) else RISES
 
 

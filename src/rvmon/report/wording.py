@@ -1,4 +1,4 @@
-"""Shared wording of reports: reasons, instants, input health, values; and the look of verdicts."""
+"""Wording shared by reports: reasons, instants, input health and values; looks of verdicts."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def without_attempts(verdict: Verdict, miss: str) -> str:
 
 
 def instants_of(attempt: Attempt) -> Sequence[str]:
-    """The instants of an attempt's trigger and decision; with absolute stamps, one line each.
+    """The instants of trigger and decision in words; separate lines if stamps are absolute.
 
     >>> instants_of(Attempt("R1", 1, 5, 9, Verdict.PASS))
     ('triggered 5 ns, decided 9 ns',)
@@ -45,14 +45,14 @@ def instants_of(attempt: Attempt) -> Sequence[str]:
 
 
 def full_reason(attempt: Attempt, report: Report) -> str:
-    """The reason of an attempt with the report's values at its decision and late response."""
+    """The reason of an attempt, with the values and the late response from the report."""
     late = report.late.get(attempt.requirement, {}).get(attempt.number)
     values = report.values.get(attempt.requirement, {}).get(attempt.number, {})
     return reason_text(attempt, late, values)
 
 
 def reason_text(attempt: Attempt, came: int | None, values: Mapping[str, str] = NO_VALUES) -> str:
-    """The reason of an attempt, with values at its decision, and when the response came late.
+    """The reason of an attempt, with values at its decision and the instant of a late response.
 
     >>> from rvmon.verdicts.attempt import Blame
     >>> from rvmon.verdicts import Verdict
@@ -103,9 +103,9 @@ def health_facts(entries: Sequence[Health], origin: int) -> Iterator[tuple[str, 
 
 
 SHOWN_PER_REQUIREMENT = 3
-"""The most failed or undecided attempts shown in full; the rest is counted."""
+"""The most failed or undecided attempts shown in full; the rest is only counted."""
 
-SHOWN = 12  # the most names listed for one fact; the rest is counted
+SHOWN = 12  # the most names listed for one fact; the rest is only counted
 
 
 def first_of(names: Sequence[str], most: int) -> str:
@@ -202,7 +202,7 @@ def wrapped(sentence: str, width: int) -> str:
       `released` occurred at 4.75 s,
         0.75 s after the trigger
     """
-    # `fill` would not change it; most sentences are such, and `fill` is slow.
+    # `fill` would not change these sentences; most are such, and `fill` is slow.
     if len(sentence) + 2 <= width and sentence.isprintable() and not sentence.endswith(" "):
         return f"  {sentence}"
     whole = _WITHIN_VALUE.sub(_TOGETHER, sentence)
