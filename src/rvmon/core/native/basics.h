@@ -38,7 +38,7 @@ static inline int64_t least(int64_t a, int64_t b)
     return (a < b) ? a : b;
 }
 
-/* A stamp orders what becomes known: 2t as time comes to instant t, 2t + 1 once the letter at t is
+/* Stamps order what becomes known: 2t when time comes to instant t, 2t + 1 once the letter at t is
  * known. This is the stamp of the end of a trace when time has come to `reached`. */
 static inline int64_t stamp_of_end(int64_t end, int64_t reached)
 {
@@ -60,7 +60,7 @@ static inline int64_t floored(int64_t t, int64_t step)
     return ((t >= 0) || (t % step == 0)) ? t / step : t / step - 1;
 }
 
-/* Register a judge to look at the position at hand; `what` is TOUCHED_LETTER or TOUCHED_TRIGGER or
+/* Register a judge to look at the current position; `what` is TOUCHED_LETTER, TOUCHED_TRIGGER or
  * both. */
 static inline void touch(run *r, int32_t index, uint8_t what)
 {

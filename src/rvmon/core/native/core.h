@@ -11,8 +11,8 @@
  * Time is counted in ticks of one nanosecond, and every instant lies strictly between -2^62 and
  * 2^62, so that the sum of two instants does not overflow.
  *
- * An unknown value is a kind of rv_number, so NaN never reaches a comparison. Still compile without
- * -ffast-math and with -ffp-contract=off, or sums differ in the last bit between compilers. */
+ * An unknown value is a kind of rv_number, so NaN never reaches a comparison. Nevertheless compile
+ * without -ffast-math and with -ffp-contract=off, or sums differ in the last bit between compilers. */
 #ifndef RVMON_CORE_H
 #define RVMON_CORE_H
 
@@ -52,25 +52,25 @@ typedef struct {
     int32_t name;              /* signals are numbered first, then events */
     int32_t says;              /* a signal: UNKNOWN or YES */
     rv_number value;           /* signals only */
-    const rv_number *fields;   /* payload of an event that occurs, one number per declared field; NULL:
-                                * all fields are unknown */
+    const rv_number *fields;   /* payload of an event that occurs: one number per declared field; NULL
+                                * if all fields are unknown */
 } rv_update;
 
 enum { RV_FAIL = 0, RV_PASS = 1, RV_INCONCLUSIVE = 2, RV_NOT_TRIGGERED = 3 };
 
-/* What settled an attempt: the samples up to its decision; the rule that an obligation without a
- * deadline counts as kept at the end of the trace; the `at end` policy of its requirement; or
- * nothing, so it stayed open. */
+/* How an attempt was settled: by the samples up to its decision; by the rule that an obligation
+ * without a deadline counts as kept at the end of the trace; by the `at end` policy of its
+ * requirement; or not at all, so it stayed open. */
 enum { RV_BY_PREFIX = 0, RV_HELD_TO_END = 1, RV_BY_POLICY = 2, RV_OPEN = 3 };
 
 /* The record of one attempt. */
 typedef struct {
     int64_t triggered;         /* start of the attempt */
-    int64_t decided;           /* when the verdict was certain; of an open attempt the end of the trace,
-                                * or, from rv_each_open, meaningless */
+    int64_t decided;           /* when the verdict became certain; for an open attempt the end of the
+                                * trace, or meaningless if it comes from rv_each_open */
     int64_t captured;          /* index of its first captured value, for rv_captured; -1: it captures
                                 * none */
-    int64_t note;              /* index of its note, for rv_note_of; -1: there is none */
+    int64_t note;              /* index of its note, for rv_note_of; -1: it has none */
     int32_t requirement;
     uint32_t number;           /* from 1, in order of the starts within the requirement; attempts in
                                 * doubt are numbered separately */
@@ -111,7 +111,7 @@ typedef struct {
 enum {
     RV_OK = 0,
     RV_NO_MEMORY = 1,
-    RV_TOO_EARLY = 2,          /* not later than what was already judged */
+    RV_TOO_EARLY = 2,          /* at or before an instant that was already judged */
     RV_OUT_OF_RANGE = 3,       /* an instant outside (-2^62, 2^62) */
     RV_FINISHED = 4,           /* rv_finish was called; only rv_reset starts over */
     RV_BAD_SNAPSHOT = 5,       /* made for another plan, or damaged */
@@ -119,7 +119,7 @@ enum {
 };
 
 /* Validate a plan. Returns -1 if it is valid, else the number of the first section found wrong
- * (plan/plan.h), 0 also standing for a bad header. `bytes` has to be aligned to 8. */
+ * (plan/plan.h); 0 may also mean a bad header. `bytes` has to be aligned to 8. */
 int32_t rv_plan_check(const void *bytes, size_t size);
 
 /* A monitor before its first sample; NULL if the plan is invalid or memory is short. The plan is
@@ -131,9 +131,9 @@ void rv_free(rv_monitor *m);
  * many records, instead of growing on demand. RV_NO_MEMORY spoils the run (see rv_step). */
 int rv_reserve(rv_monitor *m, int32_t attempts);
 
-/* Bytes handed out so far: what a block aligned to 16 has to hold for the same calls. Measure it in a
- * block, or after rv_reserve: on a heap, an array that grew beyond 16 KiB was resized and counts once,
- * while in a block its smaller predecessors stay behind. */
+/* Bytes handed out so far: the size that a block aligned to 16 needs for the same calls. Measure it in
+ * a block, or after rv_reserve: on a heap, an array that grew beyond 16 KiB was resized and counts
+ * once, while in a block its smaller predecessors remain. */
 size_t rv_memory_used(const rv_monitor *m);
 
 /* Start a new run: all attempts, records and values are dropped, memory is kept for reuse, and
@@ -144,7 +144,7 @@ int rv_reset(rv_monitor *m);
  * throughout the run. */
 void rv_set_absent(rv_monitor *m, int32_t name);
 
-/* Judge one sample: all updates that bear the instant `t`, which has to be later than every sample
+/* Judge one sample: all updates with the instant `t`, which has to be later than every sample
  * before. A refused sample leaves the monitor as it was, except for RV_NO_MEMORY: then the run is
  * spoilt, that is, it accepts nothing more and no requirement gets the verdict PASS or
  * NOT_TRIGGERED. */
@@ -153,20 +153,20 @@ int rv_step(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count);
 /* Promise that no sample before `t` will come. This lets deadlines before `t` expire. */
 int rv_advance(rv_monitor *m, int64_t t);
 
-/* An outage of these names begins: from `since` on their sources may have said anything, so values,
- * occurrences and even whether there was an update are unknown. Updates of them that arrive during
- * the outage are ignored. Implies rv_advance(since); RV_TOO_EARLY, without any effect, if `since`
- * was judged already. Names without a source are skipped. `count` may be 0: where only samples are
- * positions, unknown samples alone may have been lost. */
+/* Start an outage of these names: from `since` on their sources may have sent anything, so values,
+ * occurrences and even whether there was an update are unknown. Updates of the names that arrive
+ * during the outage are ignored. Implies rv_advance(since); RV_TOO_EARLY, without any effect, if
+ * `since` was already judged. Names without a source are skipped. `count` may be 0, since in sampled
+ * time a lost sample matters even if none of its names is read. */
 int rv_lose(rv_monitor *m, int64_t since, const int32_t *names, int32_t count);
 
-/* The outage of these names ends, `at` being its last instant; time has to have advanced that far.
- * An event is known again behind `at`, a signal from its first update at or after `at`. */
+/* End the outage of these names; `at` is its last instant, and time has to have advanced that far.
+ * An event is known again after `at`, a signal from its first update at or after `at`. */
 int rv_found(rv_monitor *m, int64_t at, const int32_t *names, int32_t count);
 
 /* Report that a sample at `t` with these names arrived too late to be judged. From now on no
- * requirement that it could have affected gets PASS or NOT_TRIGGERED, and records already reported
- * stand. `count` -1: its content is unreadable, so every requirement is affected. */
+ * requirement that it could have affected gets PASS or NOT_TRIGGERED; records already reported stay
+ * valid. `count` -1: the sample is unreadable, so every requirement is affected. */
 int rv_late(rv_monitor *m, int64_t t, const int32_t *names, int32_t count);
 
 /* End the run at `t`, or at the last instant known so far if that is later or `t` is RV_NO_TIME.
@@ -200,8 +200,8 @@ rv_staleness rv_stale(const rv_monitor *m, int32_t signal);
 
 /* The records since the last rv_forget_records; returns their number. Those of one call are sorted
  * by decision instant, then requirement, then number. The array belongs to the monitor and is valid
- * until its next call; rv_captured gives a record's captured values (NULL: none), valid equally
- * long. */
+ * until its next call. rv_captured returns the captured values of a record, valid for the same time;
+ * NULL: none. */
 int64_t rv_records(const rv_monitor *m, const rv_record **records);
 const rv_number *rv_captured(const rv_monitor *m, const rv_record *record);
 
@@ -223,10 +223,10 @@ bool rv_trim(rv_monitor *m);
 typedef bool (*rv_take)(void *user, const rv_record *record, const rv_number *captured);
 void rv_each_open(rv_monitor *m, rv_take take, void *user);
 
-/* Notes: for each record, the raw data from which a reason ("why did it fail?") can be derived:
- * where its automaton stood just before the decision, since when each proposition had its truth,
- * and the letters that matter. Off by default: a note takes some tens of words per decision and
- * some nanoseconds per change. notes/write_notes.c documents the words.
+/* Notes: for each record, the raw data from which a reason ("why did it fail?") can be derived: the
+ * state of its automaton just before the decision, since when each proposition had its truth, and
+ * the letters that matter. Off by default: a note takes some tens of words per decision and some
+ * nanoseconds per change. notes/write_notes.c documents the words.
  *
  * Letters are stored in chunks called pieces, shared by many notes; a full piece never changes. A
  * reader may attach two pointers of its own to a piece; `let_go` is called with each when the piece
@@ -241,10 +241,10 @@ void **rv_piece_held(rv_piece *piece, int32_t which);                 /* the rea
 
 typedef struct {
     const int64_t *words;      /* the note itself */
-    const int64_t *state;      /* the propositions at the decision; NULL: not needed */
+    const int64_t *state;      /* the propositions at the decision; NULL if they are not needed */
     int64_t count;             /* words of the note */
     int64_t state_count;
-    rv_piece *first;           /* the first piece of letters; NULL: they do not matter */
+    rv_piece *first;           /* the first piece of letters; NULL if letters do not matter */
     rv_piece *last;
     int32_t last_count;        /* how many words of the last piece belong to the note */
 } rv_note;
@@ -262,8 +262,9 @@ bool rv_note_of(const rv_monitor *m, const rv_record *record, rv_note *note);
 int64_t rv_notes(const rv_monitor *m, const int64_t **words);
 bool rv_span(const rv_monitor *m, int32_t number, rv_note *note);
 
-/* Measure every position at which there is a sample, not only those at which an attempt starts.
- * Requirements with captured values are excepted. Before the first sample, for a plan with margins. */
+/* Measure every position at which there is a sample, not only those at which an attempt starts, but
+ * for requirements with captured values. To be called before the first sample, for a plan with
+ * margins. */
 void rv_measure_positions(rv_monitor *m);
 
 /* The margins that became final since the last rv_forget_margins; returns their number. Those of
@@ -307,11 +308,11 @@ int rv_load(rv_monitor *m, const void *bytes, size_t size);
 bool rv_spoilt(const rv_monitor *m);
 
 /* For a plan that records the truths of formulas over time (`truths` in plan.md): the ranges of
- * positions at which an operator is known to have a value, with unknown inputs resolved against it
- * or, if `better`, in its favour. Positions are ticks; ticks divided by the gap; or, where only
- * samples are positions, sample numbers from 0. They reach to the last change, and to the end once
- * the run is finished. Returns how many ranges; valid until the next call; -1: the plan records
- * none, or has no such operator. */
+ * positions at which an operator is known to have a value, with unknown inputs resolved against the
+ * formula or, if `better`, in its favour. Positions are ticks; ticks divided by the gap; or, where
+ * only samples are positions, sample numbers from 0. They extend to the last change, and to the end
+ * once the run is finished. Returns the number of ranges, which are valid until the next call; -1 if
+ * the plan records none, or has no such operator. */
 typedef struct {
     int64_t first;
     int64_t last;
@@ -332,7 +333,7 @@ const rv_hit *rv_hits(const rv_monitor *m, int32_t *items);
 /* Coverage of an automaton: for each pair of locations how often an attempt moved from one to the
  * other, at index `from * locations + to`; the diagonal of the initial location counts the starts.
  * Attempts in doubt, and moves on which the two readings of an unknown letter disagree, are not
- * counted. NULL and 0 if the plan does not ask for it. */
+ * counted. NULL and 0 if the plan does not request it. */
 const rv_hit *rv_moves(const rv_monitor *m, int32_t requirement, int32_t *locations);
 
 /* The state of the run relative to `now`, which is at or after its last sample, as a word sequence:
@@ -365,8 +366,8 @@ enum { RV_COLUMN_REAL, RV_COLUMN_WHOLE, RV_COLUMN_BYTE };
 typedef struct rv_column {
     const void *values;        /* elements as `kind` says; NULL: an event, or a field that is unknown
                                 * throughout */
-    const uint8_t *says;       /* per row an RV_SAYS_* value, or 255: no update (of a field: not given);
-                                * NULL: YES in every row */
+    const uint8_t *says;       /* per row an RV_SAYS_* value, or 255 for no update (for a field: not
+                                * given); NULL: YES in every row */
     int32_t kind;
     int32_t name;              /* unused in a column of a field */
     const struct rv_column *fields; /* of an event, a column per field, or NULL; the event occurs with a

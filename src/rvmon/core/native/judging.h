@@ -1,12 +1,12 @@
-/* Per-judge state: the open attempts of a requirement and the engine that decides them. A judge is
+/* Per-judge state: the open attempts of a requirement and the engine that decides them. A judge uses
  * one of four engines: an automaton that drives attempts one by one; an automaton with a queue,
  * where attempts differ only by age (attempts/queue.c); a network that evaluates the formula over
  * ranges of positions (networks/); a chain of nested windows (windows/).
  *
  * Throughout, "worse" and "better" are the two readings of unknown input: every unknown proposition
- * resolved against the requirement, or in its favour. While they agree one state serves both; they
- * are parted from the first unknown letter that makes a difference until they meet again. An
- * attempt is decided when the worse reading passes or the better one fails. */
+ * resolved against the requirement, or in its favour. While the readings agree, one state serves
+ * both; they are parted from the first unknown letter that makes a difference until they agree
+ * again. An attempt is decided when the worse reading passes or the better one fails. */
 #ifndef RVMON_JUDGING_H
 #define RVMON_JUDGING_H
 
@@ -15,8 +15,8 @@
 typedef struct run run;
 
 /* An open attempt, in the pool of its home. `next` links it into the list of its judge, or of the
- * free slots. Behind it lie its clocks, then those of its better reading: instants at which they
- * were reset. */
+ * free slots. It is followed by its clocks, then those of its better reading: the instants at which
+ * they were reset. */
 typedef struct {
     int64_t triggered;         /* instant of the trigger */
     int64_t due;               /* the next tick at which time alone changes it; NEVER */
@@ -26,24 +26,24 @@ typedef struct {
     int32_t better;            /* location in the better reading, if parted */
     bool parted;               /* whether the two readings differ */
     bool sure;                 /* whether it surely was triggered */
-    bool trigger_unknown;      /* episodes: whether `running` was unknown at some position of it */
-    bool cannot_pass;          /* it can at best be inconclusive: a signal had no value yet, or a
-                                * captured value is not known any more */
-    int64_t doubted_at;        /* the position at which its readings parted, for notes; RV_NO_TIME:
-                                * nowhere */
+    bool trigger_unknown;      /* episodes: whether `running` was unknown at one of its positions */
+    bool cannot_pass;          /* it can at best be inconclusive: a signal has had no value yet, or a
+                                * captured value is no longer known */
+    int64_t doubted_at;        /* the position at which its readings parted, for notes; RV_NO_TIME if
+                                * they did not */
     int32_t record;            /* its margin record, from 1; 0: not measured */
     int64_t clocks[];
 } attempt;
 
-/* The rest of an attempt whose part captures values: at the same index as the attempt. Such
+/* Further fields of an attempt whose part captures values, at the same index as the attempt. Such
  * attempts are spread over many runs, so numbers are assigned and records written at the end of a
- * call, when the order over all instances is known (runs/captured.c). The three links are lists of
+ * call, when the order over all instances is known (runs/captured.c). The three links form lists of
  * the home. */
 typedef struct {
     run *judge;                /* the run that judges it; NULL: the slot is free */
     int64_t became;            /* when it became sure */
-    int64_t decided;           /* with `note`, `rule` (the judge), `verdict`, `decision`: as in its
-                                * record */
+    int64_t decided;           /* this, `note`, `rule` (the judge), `verdict` and `decision` are as in
+                                * its record */
     int64_t note;
     int32_t next_sure;
     int32_t next_doubt;
@@ -69,9 +69,9 @@ typedef struct {
 typedef struct {
     ranges known[2];
     ranges added[2];           /* by the last step */
-    int64_t base;              /* the first position that is wanted and not known */
+    int64_t base;              /* the first wanted position that is not known */
     int64_t wanted;
-    int64_t earliest[2];       /* by value, the first instant at which something new can become known */
+    int64_t earliest[2];       /* by value, the earliest instant at which a position can become known */
 } operator_state;
 
 typedef struct {
@@ -87,7 +87,7 @@ typedef struct {
     int64_t closed;            /* the end of the trace once it is over; else NEVER */
 } network;
 
-/* The network of a judge. `readings[1]`, the better one, is used from the first unknown letter on. */
+/* The networks of a judge. `readings[1]`, the better one, is used from the first unknown letter on. */
 typedef struct {
     network readings[2];
     uint8_t *leaf;             /* by leaf, bits: 1, true in the worse reading; 2, in the better */
@@ -105,13 +105,13 @@ typedef struct {
     int32_t room;              /* a power of two, or 0 */
     int32_t head;
     int32_t count;
-    int32_t asked;             /* how many lie before the position last asked for: queries mostly
+    int32_t asked;             /* how many lie before the position last queried, as queries mostly
                                 * ascend */
     bool begun;                /* the value before the first change */
 } changes;
 
-/* One reading of a chain of windows: for each nesting level where the value changes if the letter
- * stays as it is; level 0 is the innermost operand. */
+/* One reading of a chain of windows: for each nesting level, where its value changes if the letter
+ * stays as it is. Level 0 is the innermost operand. */
 typedef struct {
     changes *levels;
     changes ends;              /* of the leaf that ends the outermost obligation */
@@ -139,17 +139,17 @@ typedef struct {
     int32_t spare;
 } queued;
 
-/* The most clocks of an automaton whose attempts may stand in a queue; the plan's maker stops there. */
+/* The most clocks of an automaton whose attempts may be in a queue; rvmon builds none with more. */
 #define QUEUED_CLOCKS 6
 
-/* Clocks of a segment that are no common instant: reset at each attempt's trigger; reset at each tick so
- * far, of which the last is the judge's `position`; and reset at an instant of each attempt (`own`), none
- * earlier than that of the attempt before. */
+/* Values for a clock of a segment that is not one common instant: the clock was reset at each attempt's
+ * trigger; or at every tick up to the judge's `position`; or at an instant of each attempt (`own`),
+ * none earlier than that of the attempt before. */
 #define OF_TRIGGER RV_NEVER
 #define OF_EACH_TICK (RV_NEVER - 1)
 #define OF_EACH_ATTEMPT (RV_NEVER - 2)
 
-/* Instead of a slot of the pool: the youngest attempt of the queue. */
+/* In place of a slot of the pool: the youngest attempt of the queue. */
 #define IN_QUEUE (-2)
 
 /* `count` consecutive attempts of a queue in one location, with clocks of one kind. */
@@ -165,11 +165,11 @@ typedef struct {
     int32_t count;
 } segments;
 
-/* Where an attempt of a queue stands that begins by a letter. Its clocks begin with it, so whenever it
- * begins, equal letters begin it alike. */
+/* The state of a queue's attempt after its first letter. Its clocks start with the attempt, so equal
+ * first letters always lead to the same state. */
 typedef struct {
     int64_t due;               /* ticks until its region changes; NEVER */
-    int32_t letter;            /* -1: none began yet */
+    int32_t letter;            /* the first letter; -1: no attempt has started yet */
     int32_t location;
     uint32_t sliding;          /* by clock, whether each tick resets it while the letter stays */
     bool rests;                /* the next equal letter leaves it there */
@@ -183,7 +183,7 @@ typedef struct {
     int32_t count;
     segments now;
     segments next;             /* scratch: what a step makes of them */
-    beginning latest;          /* of the attempt that began last */
+    beginning latest;          /* of the attempt that started last */
 } queue;
 
 /* Truths of a judge's leaves at some instants, ascending, in a ring. An entry is the instant, then
@@ -199,9 +199,9 @@ typedef struct {
  * position, then the packed truths of the propositions. */
 struct rv_piece {
     rv_piece *next;            /* the following chunk of the same judge */
-    rv_piece *next_left;       /* next of those that only notes still need */
-    const int64_t *before;     /* the letter before the next one, in this chunk or the last; valid while
-                                * this is the last chunk */
+    rv_piece *next_left;       /* in the list of chunks that only notes still need */
+    const int64_t *before;     /* the letter that keep_letter last compared with, in this chunk or the
+                                * one before; valid while this is the last chunk */
     void *held[2];             /* pointers of the reader: see rv_piece_held */
     uint32_t pinned;           /* equals rv_monitor.pins if records' notes refer to it */
     int32_t count;             /* words in use */
@@ -210,7 +210,8 @@ struct rv_piece {
     int64_t words[];
 };
 
-/* The letters that a note refers to: from the begin of `first` to `last_count` words of `last`. */
+/* The letters that a note refers to: from the start of `first` to the first `last_count` words of
+ * `last`. */
 typedef struct {
     rv_piece *first;
     rv_piece *last;
@@ -221,31 +222,30 @@ typedef struct {
 typedef struct {
     truths triggers;           /* the leaves at triggers; an entry stands for all triggers up to the
                                 * next entry */
-    truths doubts;             /* the leaves where an unknown value may keep attempts from being
-                                * decided */
-    rv_piece *first;           /* letters since the oldest open attempt, of a network */
+    truths doubts;             /* the leaves at positions where an unknown value may keep attempts from
+                                * being decided */
+    rv_piece *first;           /* of a network: the letters since the oldest open attempt */
     rv_piece *last;
     rv_piece *pinned;          /* the last pinned piece that is still listed */
     int32_t pieces;
     int32_t open_count;        /* open attempts, counted before their notes are written */
     uint32_t epoch;            /* `epoch` of the monitor when `state` was written */
-    int64_t state;             /* index among the note words of the last state written, for sharing;
-                                * -1 */
-    int64_t state_at;          /* the position it describes */
+    int64_t state;             /* index of the last state written among the note words, for sharing;
+                                * -1: none */
+    int64_t state_at;          /* the position that the state describes */
     int64_t began_at;          /* instant of the last trigger */
     int64_t doubted_at;        /* instant of the last entry of `doubts` */
-    int64_t undecidable_since; /* the earliest trigger of an undecidable attempt; NEVER: there is
-                                * none */
+    int64_t undecidable_since; /* the earliest trigger of an undecidable attempt; NEVER: none */
 } noting;
 
-/* History of a node: since when it has its truth, and the last positions at which it was false and
- * true before; RV_NO_TIME: never. */
+/* The history of a node: since when it has its truth, and when it was last false and last true before
+ * that; RV_NO_TIME: never. */
 typedef struct {
     int64_t since;
     int64_t last[2];
 } truth_times;
 
-/* That history now, and as it was before the last change, since a network may report a decision one
+/* The history now, and as it was before the last change, since a network may report a decision one
  * position late. */
 typedef struct {
     truth_times now;
@@ -258,42 +258,42 @@ typedef struct {
 typedef struct {
     logged_node *nodes;
     int64_t moved_at;          /* position of the last change of any of them */
-    int64_t begun;             /* an instance created late knows nothing of before this position;
+    int64_t begun;             /* an instance created late has no history before this position;
                                 * RV_NO_TIME: it saw the whole run */
 } truth_log;
 
-/* Why a judge looks at the position at hand: its letter, or its trigger, changed. */
+/* Why a judge looks at the current position: its letter, or its trigger, changed. */
 enum { TOUCHED_LETTER = 1, TOUCHED_TRIGGER = 2 };
 
 typedef struct {
     int64_t position;          /* the position up to which its attempts were driven */
-    int64_t lag;               /* networks: by how many ticks its timer was postponed; decisions may lie
-                                * that long before it */
+    int64_t lag;               /* networks: by how many ticks its timer was postponed; decisions may be
+                                * that much earlier */
     int64_t failed_at;         /* when the attempt of the current episode failed; NEVER: it did not */
-    int64_t again_at;          /* start of the latest attempt that followed such a failure */
+    int64_t again_at;          /* start of the latest attempt that followed a failure */
     networks *net;
     chain *chain;
     queue *queue;              /* NULL: its attempts are driven one by one */
-    noting *noting;            /* NULL: nothing is noted */
-    int32_t first;
-    int32_t last;              /* its end; -1 */
+    noting *noting;            /* NULL: no notes are kept */
+    int32_t first;             /* the list of its open attempts; -1: empty */
+    int32_t last;              /* the end of that list; -1 */
     int32_t undecidable;       /* list of its undecidable attempts, which are never looked at again; -1:
                                 * empty */
     int32_t current;           /* the attempt of the current episode; IN_QUEUE: the youngest there; -1 */
     int32_t letter;            /* the letter class of the last step, in the worse reading */
-    int32_t other;             /* in the better reading */
+    int32_t other;             /* the same in the better reading */
     int32_t worse;             /* running sum of the letter, worse reading: nodes add their weights as
                                 * they change */
-    int32_t better;            /* in the better reading */
-    uint32_t count;            /* attempts so far, sure ones */
+    int32_t better;            /* the same in the better reading */
+    uint32_t count;            /* sure attempts so far */
     uint32_t doubts;           /* attempts in doubt so far */
     uint32_t passed;
     uint32_t failed;
     uint32_t inconclusive;
-    uint8_t before;            /* truth of its trigger at the position before, for edges */
-    uint8_t touched;           /* TOUCHED_LETTER and TOUCHED_TRIGGER bits for the position at hand; 0:
+    uint8_t before;            /* truth of its trigger at the previous position, for edges */
+    uint8_t touched;           /* TOUCHED_LETTER and TOUCHED_TRIGGER bits for the current position; 0:
                                 * not listed */
-    bool running;              /* an episode is going on */
+    bool running;              /* an episode is open */
     bool restless;             /* an attempt may move at the next position even if nothing changes */
     bool slides;               /* some clock is restarted at every tick, so no attempt may be skipped */
     bool sorted;               /* whether `due` ascends along the list */
@@ -306,19 +306,19 @@ typedef struct {
 /* Why a signal was not known, continuing RV_IS_NONE and RV_IS_NAN. */
 enum { IS_STALE = RV_IS_NAN + 1, NEVER_KNOWN_YET, HAS_NO_SOURCE };
 
-/* An interval over which a signal had no known value, for notes. */
+/* A stretch over which a signal had no known value, for notes. */
 typedef struct {
-    int64_t since;             /* meaningless if it never had a value */
-    int64_t until;             /* NEVER: it still has none */
+    int64_t since;             /* meaningless if the signal never had a value */
+    int64_t until;             /* NEVER: it still has no known value */
     int32_t local;
     int32_t why;
 } unknown_stretch;
 
 /* The state of a coverage group. */
 typedef struct {
-    int32_t current;           /* items that are true, or were and have not been false since */
-    uint8_t before;            /* truth of its occasion at the position before */
-    bool called;               /* it evaluates the position at hand */
+    int32_t current;           /* how many items are true, or were and have not been false since */
+    uint8_t before;            /* truth of its occasion at the previous position */
+    bool called;               /* it evaluates the current position */
 } covered;
 
 /* Coverage: the hits of a run. */

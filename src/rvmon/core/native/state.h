@@ -49,7 +49,7 @@ typedef struct {
     int32_t spare;
 } history;
 
-/* Occurrences of one event at the position at hand. */
+/* Occurrences of one event at the current position. */
 typedef struct {
     rv_number *fields;         /* one row of fields per occurrence */
     uint8_t *known;            /* per occurrence; 0: it may not have occurred */
@@ -63,43 +63,43 @@ typedef struct {
     int64_t end;
 } stretch;
 
-/* Outage state of a name: known; lost, end unknown; lost up to the instant in `until`; and, of a
- * signal, over but without an update since. */
+/* The outage state of a name: not lost; lost, with unknown end; lost up to the instant in `until`;
+ * for a signal: the outage is over, but no update has come since. */
 enum { NOT_LOST = 0, LOST_ON = 1, LOST_UNTIL = 2, LOST_SINCE = 3 };
 
-/* What an update kept or delivered internally says, beyond core.h: an outage of a name begins, or
- * ends. The rest concern no name: before the first sample there was an outage; from here on every
- * tick may be a position; from behind here on only samples are positions again. */
+/* What an internal update says, in addition to core.h: an outage of a name starts, or ends. The rest
+ * concern no name: there was an outage before the first sample; from here on every tick may be a
+ * position; after this instant only samples are positions again. */
 enum { SAYS_LOST = RV_SAYS_YES + 1, SAYS_FOUND, SAYS_AHEAD, SAYS_DENSE, SAYS_SPARSE };
 
-/* Whether the trace has begun: it has; an outage before the first sample leaves it open; it will
- * have at the next position. */
+/* Whether the trace has started: yes; unknown, because of an outage before the first sample; it will
+ * have started at the next position. */
 enum { ARE_THERE = 0, MAY_BE_THERE = 1, ARE_THERE_NEXT = 2 };
 
 /* Memory of a past operator: the ranges of instants at which a bounded `since` holds, or the
- * members of a window (formulas/members.h), in a ring. A node has two. Of a `since` the second is
- * the better reading, in use while `apart`. Of a window the second holds the members' numbers; its
- * `total` counts the members that only may be some, its `lost` how many members have to come until
- * the last ones are known again, and the `left` of the first tells that all numbers summed were
- * whole. For a minimum or maximum of the last `most` members `total` numbers the members. */
+ * members of a window (formulas/members.h), in a ring. A node has two. For a `since` the second is
+ * the better reading, in use while `apart`. For a window the second holds the members' numbers; its
+ * `total` counts the possible members, its `lost` how many members have to come until the last ones
+ * are known again; `left` of the first ring says that all numbers summed were whole. For a minimum
+ * or maximum of the last `most` members, `total` numbers the members. */
 typedef struct {
     stretch *at;
     int32_t room;              /* a power of two, or 0 */
     int32_t head;
     int32_t count;
-    bool left;                 /* a `since`: its operands at the position before */
+    bool left;                 /* of a `since`: its operands at the previous position */
     bool right;
     bool growing;              /* the last range is still growing */
     bool apart;                /* the second reading differs and is kept */
-    int64_t total;             /* members that count */
-    int64_t lost;              /* members whose number is unknown */
-    int64_t members;           /* all members */
-    int32_t *slots;            /* hash table of the latest of equal members: distinct.c */
+    int64_t total;             /* number of members that count */
+    int64_t lost;              /* number of members whose number is unknown */
+    int64_t members;           /* number of all members */
+    int32_t *slots;            /* hash table of the latest among equal members: distinct.c */
     int32_t slot_room;
     int32_t known_slots;       /* slots in use; -1: the table has to be rebuilt */
 } stretches;
 
-/* Memory of a `since` from 0 on, or without an end: one instant is enough (formulas/past.c). */
+/* Memory of a `since` with lower bound 0, or without upper bound: one instant (formulas/past.c). */
 typedef struct {
     int64_t at;
     bool left;
@@ -109,8 +109,8 @@ typedef struct {
 
 /* An exact sum (Kulisch's long accumulator, formulas/exact.c): two's complement fixed point in
  * limbs of 32 bits, the lowest bit worth 2^-1088. 2240 bits hold the largest double times the
- * longest duration, added at every tick of that duration. Behind it lies the sum of squares (for a
- * variance, at twice that precision), or the sum in the better reading. */
+ * longest duration, added at every tick of that duration. It is followed by the sum of squares (for
+ * a variance, at twice that precision), or by the sum in the better reading. */
 #define SUM_LIMBS 71
 #define SQUARE_LIMBS 142
 #define TALLY_LIMBS (SUM_LIMBS + SQUARE_LIMBS)
@@ -127,8 +127,8 @@ struct run {
     int64_t gap;               /* ticks between two positions; 0: only samples are positions */
     run *next;                 /* in the list of its home */
     run *previous;
-    run *parent;               /* where its attempt was triggered; NULL: it is of none */
-    run *first_child;          /* the runs of attempts triggered in it */
+    run *parent;               /* the run in which its attempt was triggered; NULL: it has none */
+    run *first_child;          /* list of the runs of attempts triggered in it */
     run *sibling;
     run *previous_sibling;
     uint64_t call;             /* number of the last call that concerned it */
@@ -136,29 +136,29 @@ struct run {
     judge *judges;             /* by judge of the part */
     truth_log *truth_log;      /* NULL: no notes are kept */
     timers rules;              /* timers, by judge */
-    int32_t *touched;          /* judges that look at the position at hand */
+    int32_t *touched;          /* judges that look at the current position */
     int32_t *restless;         /* judges with attempts that may move at the next position */
-    int32_t *repeating;        /* judges whose pulse trigger was true at the position before */
+    int32_t *repeating;        /* judges whose pulse trigger was true at the previous position */
     int32_t *failing;          /* judges whose current episode has failed */
     int32_t *due_rules;        /* scratch, for judges whose timer fired */
     int32_t touched_count;
     int32_t restless_count;
     int32_t repeating_count;
     int32_t failing_count;
-    /* Of an instance, or of an attempt with captured values. */
-    int64_t opens_at;          /* no attempt starts before; NEVER: none ever */
-    int64_t cut;               /* from then on the captured values are not known any more */
+    /* For an instance, or for an attempt with captured values. */
+    int64_t opens_at;          /* no attempt starts earlier; NEVER: none ever starts */
+    int64_t cut;               /* from this instant on the captured values are no longer known */
     int64_t occurred;          /* first occurrence of the key of this instance */
     uint32_t rank;             /* of its instance, by first occurrence, from 1; 0: root, or unknown
                                 * key */
-    int32_t key;               /* index of that key in the home's keys */
+    int32_t key;               /* index of its key in the home's keys */
     int32_t judged;            /* the judge of its one attempt, with captured values */
     int32_t starters;          /* judges whose attempts start here, as a bit set */
     int32_t judging;           /* judges whose attempts are judged here, as a bit set */
     bool opening;              /* attempts start from the next position on */
     bool over;                 /* `payloads` are of the last position: captures still read them */
     bool watched;              /* its parent has to check whether the captured values remain known */
-    bool blurs;                /* they can still become unknown */
+    bool blurs;                /* its captured values can still become unknown */
     bool touched_now;          /* it did something in this call, and is in the home's `touched` */
     bool is_spare;             /* released, for reuse */
     bool doubted;              /* it is unknown whether there is such an instance */
@@ -171,17 +171,17 @@ struct run {
     span *spans;               /* by signal, the interval in which no comparison of it changes */
     history *history;          /* by signal with SIGNAL_HISTORY */
     occurrences *payloads;     /* by event */
-    int32_t *chosen;           /* by event, the occurrence that the comparison at hand reads */
+    int32_t *chosen;           /* by event, the occurrence that the current comparison reads */
     stretches *past;           /* two for each STRETCH or WINDOW node */
-    edge *edges;               /* two for each EDGE node, as `stretches` */
+    edge *edges;               /* two for each EDGE node, as for `past` */
     tally *tallies;            /* by `sum` of WINDOW nodes */
     rv_number *amounts;        /* results of WINDOW_NUMBER nodes */
     timers wake;               /* timers: of nodes, then of signals that go stale */
     uint64_t *dirty;           /* nodes to be evaluated, as a bit set */
     uint64_t *dirty_words;     /* words of `dirty` that are not 0, as a bit set */
-    int32_t *fading;           /* atoms valid at the last position only, to be read again */
-    int32_t *fresh;            /* atoms valid at the coming position only */
-    int32_t *marks;            /* names whose updates are forgotten after the position */
+    int32_t *fading;           /* atoms valid only at the last position, to be read again */
+    int32_t *fresh;            /* atoms valid only at the coming position */
+    int32_t *marks;            /* names whose updates are forgotten after this position */
     uint8_t *marked;           /* by name, whether it is in `marks` */
     uint8_t *truth;            /* by node */
     uint8_t *atom;             /* by atom, its truth */
@@ -190,16 +190,16 @@ struct run {
     uint8_t *is_fresh;
     uint8_t *births;           /* by signal, births so far: 1, a first value; 2, an update after it */
     uint8_t *updated;          /* by name, whether it was updated at this position */
-    uint8_t *changed;          /* by signal, whether that brought another value */
+    uint8_t *changed;          /* by signal, whether the update changed its value */
     uint8_t *occurs;           /* by event, a truth */
     uint8_t *silent;           /* by event, `occurs` without an update: UNKNOWN if lost, else FALSE */
     uint8_t *absent;           /* by name, whether it is lost, or without a source */
     uint8_t *seen;             /* by slot, truths that nodes remember */
     /* Outages, by name; empty if the part reads none. */
     uint8_t *lost;             /* NOT_LOST, ... */
-    int64_t *until;            /* the last instant of the outage; while that is unknown, the first */
-    rv_number *kept;           /* the last value at the instant `until` */
-    uint8_t *has_kept;         /* whether there is one */
+    int64_t *until;            /* the last instant of the outage; while it is unknown, the first */
+    rv_number *kept;           /* the last value received at the instant `until` */
+    uint8_t *has_kept;         /* whether there is such a value */
     uint8_t *keeps;            /* whether a value at that instant counts after the outage */
     measuring *margins;        /* margins, by judge; NULL: the plan has none */
     timers margins_due;        /* timers, by judge: when time alone may settle a margin */
@@ -211,27 +211,27 @@ struct run {
     struct progress {
         int64_t origin;        /* the first position, or the first one that may exist */
         int64_t dense_from;    /* the first tick that may be a position (`dense`) */
-        int64_t begun;         /* the first position that surely exists; NEVER */
+        int64_t begun;         /* the first position that certainly exists; NEVER */
         int64_t position;      /* the position visited last */
-        int64_t before;        /* the position before the one at hand */
+        int64_t before;        /* the position before the current one */
         int64_t alarm;         /* nothing happens before this instant unless an input changes */
         int64_t after;         /* the last sample taken */
         int64_t awaited;       /* with a gap: the tick that sees the samples taken since the last */
         int64_t ends_at;       /* the next position at which some outage may be over; NEVER */
-        int64_t quiet_from;    /* between these two instants no input arrives */
+        int64_t quiet_from;    /* no input arrives between this and the next instant */
         int64_t quiet_until;
-        int32_t lost_count;    /* names in an outage */
+        int32_t lost_count;    /* number of names in an outage */
         int32_t fading_count;
         int32_t fresh_count;
         int32_t marks_count;
-        int32_t births_left;   /* births still waited for */
+        int32_t births_left;   /* births still awaited */
         int32_t undetermined_left; /* triggers that were never known */
-        int32_t phase;         /* 1 once nothing is left of these two (plan.md: phases) */
+        int32_t phase;         /* 1 once both of these are 0 (plan.md: phases) */
         bool started;
-        uint8_t starting;      /* a truth: whether the position at hand is the first */
+        uint8_t starting;      /* a truth: whether the current position is the first */
         uint8_t presence;      /* ARE_THERE, ... */
         bool dense;            /* sampled time, in an outage: every tick may be a position */
-        bool gathered;         /* something is to be forgotten after the position at hand */
+        bool gathered;         /* something has to be forgotten after the current position */
         bool dirty;            /* the position has to be visited though no node is dirty */
     } at;
 };
@@ -254,8 +254,7 @@ typedef struct {
     const rv_update *update;
 } incoming;
 
-/* An update that is stored: for runs that replay the past, or until its tick comes. `fields` are
- * owned. */
+/* A stored update, for runs that replay the past, or until its tick comes. It owns `fields`. */
 typedef struct {
     int64_t t;
     rv_number value;
@@ -266,8 +265,8 @@ typedef struct {
     bool last;                 /* the last update of its sample */
 } past_update;
 
-/* What the runs of a part share: their lists, the pool of attempts, and the inbox of the sample at
- * hand. */
+/* What the runs of a part share: their lists, the pool of attempts, and the inbox of the current
+ * sample. */
 struct home {
     rv_monitor *monitor;
     const part *part;
@@ -277,8 +276,8 @@ struct home {
     run *last_captured;        /* tail of that list */
     run *spare;                /* released runs, for reuse */
     run **runs;                /* by id, released ones among them */
-    rv_number *values;         /* by run and signal, where values are captured: `value` of the runs */
-    span *spans;               /* the same, `spans` of the runs */
+    rv_number *values;         /* by run and signal, if the part captures values: `value` of the runs */
+    span *spans;               /* the same for `spans` of the runs */
     run **touched;             /* runs that did something in this call */
     int32_t *called;           /* scratch: ids of the runs that a call concerns */
     timers alarms;             /* timers, by id of the run */
@@ -292,34 +291,34 @@ struct home {
     int32_t *unknown_of;       /* by signal, its latest entry there; -1: dropped */
     int32_t unknown_count;
     int32_t unknown_room;
-    captured_attempt *captured_attempts; /* by attempt, if values are captured */
+    captured_attempt *captured_attempts; /* by attempt, if the part captures values */
     size_t stride;             /* bytes of an attempt with its clocks */
     int32_t capacity;          /* of `pool`, in attempts */
     int32_t used;              /* slots of `pool` ever used */
     int32_t free_slot;         /* list of free slots below `used`; -1 */
-    incoming *inbox;           /* updates of the sample at hand that the part reads */
+    incoming *inbox;           /* updates of the current sample that the part reads */
     int32_t inbox_count;
     int32_t inbox_room;
-    int64_t previous;          /* instant of the sample before the one at hand */
+    int64_t previous;          /* instant of the sample before the current one */
     int64_t alarm;
-    /* Of a part that captures values. */
+    /* For a part that captures values. */
     uint32_t count;            /* counts as in `judge` */
     uint32_t doubts;
     uint32_t passed;
     uint32_t failed;
     uint32_t inconclusive;
     rv_number *room;           /* scratch: values captured again, to compare them */
-    rv_number *unknown_values; /* by signal: all unknown, for captures in an outage; NULL as yet */
-    int32_t sure[2];           /* attempts to be numbered, that became sure: first and last */
-    int32_t doubtful[2];       /* the same of those in doubt */
-    int32_t done[2];           /* attempts to be reported */
+    rv_number *unknown_values; /* by signal, all unknown, for captures in an outage; NULL at first */
+    int32_t sure[2];           /* list of attempts that became sure, to be numbered: first and last */
+    int32_t doubtful[2];       /* the same for attempts in doubt */
+    int32_t done[2];           /* the same for attempts to be reported */
     past_update *past;         /* stored samples */
     int32_t past_count;
     int32_t past_room;
-    int32_t past_judged;       /* updates of `past` that were judged already */
+    int32_t past_judged;       /* how many updates of `past` were judged already */
     rv_update *held;           /* scratch: a stored sample as updates */
     int32_t held_room;
-    key *keys;                 /* keys ever seen, but the oldest closed ones */
+    key *keys;                 /* all keys seen, except the oldest closed ones */
     int32_t *heads;            /* hash table; -1: empty chain */
     int32_t key_room;
     int32_t key_count;
@@ -328,8 +327,8 @@ struct home {
     int32_t newest;
     int32_t over_count;
     uint32_t last_rank;
-    networks *truths;          /* the form whose truths are recorded (rv_truths); NULL as yet */
-    bool is_blind;             /* an outage hid positions from it, so nothing is reported */
+    networks *truths;          /* the form whose truths are recorded (rv_truths); NULL at first */
+    bool is_blind;             /* an outage hid positions from `truths`, so nothing is reported */
     covering *covering;        /* coverage; NULL: none */
     rv_hit **moves;            /* by judge, moves between locations (rv_moves); NULL: none */
 };
@@ -371,21 +370,21 @@ struct rv_monitor {
     int64_t undecidable_count; /* undecidable attempts since the last trim */
     int64_t trim_at;           /* rv_trim acts beyond this many records and undecidable attempts */
     uint32_t epoch;            /* of notes: states written in another epoch are not shared */
-    before_decision before;    /* of the attempt at hand */
+    before_decision before;    /* of the current attempt */
     int64_t began;
     int64_t last;
     int64_t after;             /* a sample has to be later */
     int64_t reached;           /* no sample before this instant will come */
     rv_staleness *stale;       /* by signal */
-    margin_shape *shapes;      /* margins, by judge over all parts; NULL: the plan has none */
+    margin_shape *shapes;      /* margins, by judge over all parts; NULL: the plan has no margins */
     margin_results margins;
     uint8_t *late;             /* by requirement, whether a late sample concerned it */
     /* Sampled time (`gap` 0): outages. */
-    uint8_t *losing;           /* by name, whether it is lost; one more: an outage without a name */
+    uint8_t *losing;           /* by name, whether it is lost; last, an outage without a name */
     int32_t losing_count;
     int64_t dense_until;       /* last tick that may be a position; NEVER: open; RV_NO_TIME: none */
     int64_t dense_end;         /* the last tick of the latest outage */
-    int64_t outage_at;         /* when an outage last began or ended; RV_NO_TIME: never */
+    int64_t outage_at;         /* when an outage last started or ended; RV_NO_TIME: never */
     bool measures_positions;
     bool defers_margins;       /* rows are judged in bulk, so margins may be settled later */
     bool is_alone;             /* there is one part, without captured values */
@@ -393,7 +392,7 @@ struct rv_monitor {
     bool spoilt;
     bool keeps_notes;
     bool writes_open_notes;    /* notes of open attempts are being written */
-    bool has_open_notes;       /* notes of open attempts stand behind those of records */
+    bool has_open_notes;       /* notes of open attempts follow those of records */
 };
 
 #endif

@@ -1,8 +1,8 @@
 /* Exact sums of int64 and binary64: fixed point wide enough for every bit of a double.
  *
- * Nothing is rounded, so a number that is added and taken off again leaves no error, and a window of
- * any length keeps its sum. `sum` has SUM_LIMBS limbs, `squares` SQUARE_LIMBS (state.h), both zero at
- * first. */
+ * Nothing is rounded, so a number that is added and subtracted again leaves no error, and a window of
+ * any length can keep its sum. `sum` has SUM_LIMBS limbs, `squares` SQUARE_LIMBS (state.h), both zero
+ * at first. */
 #ifndef RVMON_EXACT_H
 #define RVMON_EXACT_H
 
@@ -19,10 +19,10 @@ double exact_roughly(const uint32_t *sum, int32_t *exponent);
  * strict). */
 bool exact_varies(const uint32_t *sum, const uint32_t *squares, int64_t count, const rv_number *limit,
                   bool strict);
-/* sum / by, and the variance, as the nearest double, halves to even; infinite: out of range. */
+/* sum / by, and the variance, as the nearest double, ties to even; infinite: out of range. */
 double exact_nearest(const uint32_t *sum, int64_t by);
 double exact_variance(const uint32_t *sum, const uint32_t *squares, int64_t count);
-/* A sum of whole numbers as one; false: it does not fit in 64 bits. */
+/* A sum of whole numbers as a whole number; false: it does not fit in 64 bits. */
 bool exact_whole(const uint32_t *sum, int64_t *found);
 
 #endif

@@ -2,8 +2,8 @@
  *
  * A part's formulas are a graph of nodes (plan.md, SEC_NODES), operands before operators, each with its
  * truth at the current position in `run.truth`. Nodes whose inputs changed are marked dirty and
- * evaluated; nodes that time alone can change have a timer in `run.wake`. What a node tells goes to
- * judges as letters and triggers. */
+ * evaluated; nodes that time alone can change have a timer in `run.wake`. Judges receive the changes of
+ * nodes as letters and triggers. */
 #ifndef RVMON_FORMULAS_H
 #define RVMON_FORMULAS_H
 
@@ -16,7 +16,7 @@ static inline int64_t timers_next(const timers *h)
 {
     return h->next;
 }
-/* The ids that are due by `t`, in no order, into `found`, which has room for all; returns how many. */
+/* Write the ids due by `t`, in no order, into `found`, which has room for all; returns how many. */
 int32_t timers_due(const timers *h, int64_t t, int32_t *found);
 
 /* ---- past.c */
@@ -27,15 +27,15 @@ bool stretches_agree(const stretches *a, const stretches *b);
 uint8_t node_since(run *r, const node_plan *n, int64_t t, uint8_t left, uint8_t right);
 uint8_t node_doubt(run *r, const node_plan *n, int32_t place, int64_t t, uint8_t now);
 
-/* Whether a node is the DOUBT of a pulse in a run that is not in doubt itself: FALSE where its operand
- * is, and while it is FALSE only an operand that is UNKNOWN changes it. */
+/* Whether a node is the DOUBT of a pulse in a run that is not itself in doubt. Such a node is FALSE
+ * where its operand is, and while it is FALSE only an UNKNOWN operand changes it. */
 static inline bool is_doubt_of_pulse(const node_plan *n)
 {
     return (n->op == NODE_DOUBT) && (n->a != 0) && (n->b == 0);
 }
 
-/* Whether a node is such a DOUBT that stays FALSE though its operand is `now` another; it remembers it,
- * as node_doubt() would. */
+/* Whether a node is such a DOUBT and stays FALSE although its operand changed to `now`; if so the node
+ * remembers the operand, as node_doubt() would. */
 static inline bool doubt_stays(run *r, int32_t place, uint8_t now)
 {
     const node_plan *n = &r->part->nodes[place];
@@ -46,7 +46,7 @@ static inline bool doubt_stays(run *r, int32_t place, uint8_t now)
     return true;
 }
 
-/* ---- window.c; `blank`: it is not known whether there is a position, and every input is unknown */
+/* ---- window.c; `blank`: the position may not exist, and every input is unknown */
 uint8_t node_window(run *r, const node_plan *n, int64_t t, uint8_t operand, bool blank);
 void restart_window(run *r, const node_plan *n);
 

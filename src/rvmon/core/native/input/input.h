@@ -1,12 +1,12 @@
-/* Input: what a sample says, up to the truths of atoms.
+/* Input: from the updates of a sample to the truths of atoms.
  *
- * An update changes a held value, or an occurrence of an event, of a run; the *atoms* that read it (one
- * comparison, event or predicate each) are read again, and the leaves of those that changed are marked
- * dirty for formulas/. A name can be *absent* (no source), *stale*, or *lost* in an outage: then it is
- * unknown.
+ * An update changes a held value of a run, or adds an occurrence of an event. The *atoms* that read it
+ * (one comparison, event or predicate each) are read again, and the leaves of those that changed are
+ * marked dirty for formulas/. A name can be *absent* (no source), *stale*, or *lost* in an outage; then
+ * it is unknown.
  *
- * `local`: a signal or event by its number in the part. Where both are meant, `name` counts signals
- * first, then events, also of the part. */
+ * `local` is the number of a signal, or of an event, in the part. `name` is a number in the part that
+ * counts signals first, then events. */
 #ifndef RVMON_INPUT_H
 #define RVMON_INPUT_H
 
@@ -23,7 +23,7 @@ rv_number number_of_double(double x);
 
 /* ---- functions.c */
 #define MOST_ARGUMENTS 4
-int32_t arguments_of(int32_t op); /* of CODE_...; 0: it is no operation */
+int32_t arguments_of(int32_t op); /* of CODE_...; 0: not an operation */
 rv_number function_of_wholes(int32_t op, int64_t a, int64_t b);
 double function_of_reals(int32_t op, const double *x); /* a result that is not finite is unknown */
 
@@ -43,8 +43,8 @@ bool compares_with(const run *r, const atom_plan *a, int32_t local, rv_number *c
 bool narrow_span(const run *r, int32_t local, const rv_number *value, span *s);
 void learn_span(run *r, int32_t local);
 
-/* Whether no comparison of a signal comes out otherwise by a value, so that only the held value has to
- * be replaced. Most samples of most signals end here. */
+/* Whether a value changes no comparison of a signal, so that only the held value has to be replaced.
+ * Most samples of most signals end here. */
 static inline bool stays_in_span(const span *s, const rv_number *held, const rv_number *value)
 {
     const double x = (value->kind == RV_REAL) ? value->as.real : (double)value->as.whole;
@@ -75,17 +75,17 @@ static inline int32_t order_of(double x, double constant)
     return IS_LESS * (int32_t)(x < constant) + IS_GREATER * (int32_t)(x > constant);
 }
 
-/* The signals of a run that take_quickly() may take now; NULL: none, as it is not in the second phase,
- * or more than truths hangs on values. */
+/* The signals of a run that take_quickly() may take now; NULL: none, since the run is not in the second
+ * phase, or has an outage, or more than truths depends on values. */
 static inline const quick_signal *quick_now(const run *r)
 {
     return ((r->at.phase == 1) && (r->at.lost_count == 0) && (r->margins == NULL)) ? r->part->quick
                                                                                     : NULL;
 }
 
-/* Take an update of a signal that only a few comparisons with constants read; false: it is no such
+/* Take an update of a signal that only a few comparisons with constants read; false: it is not such a
  * signal, or not a known value of its kind. Branches on noisy values would be mispredicted half the
- * time, so the comparisons have none: a change is a mask. */
+ * time, so the comparisons have none: a change becomes a mask. */
 static inline bool take_quickly(run *r, const quick_signal *quick, int32_t local, const rv_update *u)
 {
     const int32_t kind = quick[local].kind;
@@ -151,7 +151,7 @@ bool is_lost_at(const run *r, int32_t name, int64_t t);
 void run_take_loss(run *r, int64_t t, const incoming *in, int32_t count);
 int32_t names_to_lose(const run *r);
 
-/* ---- unknowns.c: positions of which it is not known whether they are there */
+/* ---- unknowns.c: positions that may not exist */
 void await_blank_start(run *r, int64_t t);
 void begin_blank(run *r, int64_t t);
 void end_blank(run *r, int64_t t);

@@ -1,18 +1,18 @@
-/* Delay networks: they judge formulas without an automaton (nests of bounded windows, mostly).
+/* Delay networks, which judge formulas without an automaton (mostly nested bounded windows).
  *
  * A network has a node per operator of the formula. A node holds the *positions* at which it is known
  * to be TRUE and those at which it is known to be FALSE, as sets of ranges; all others depend on
  * letters or time to come. A step advances time (`now`) and letters (`last`): each node derives the
  * ranges *added* to it from those added to its operands. One network serves all attempts of a judge:
- * an attempt is a position, decided when the root is known there. The cost of a step is in the ranges
- * that it adds, not in positions.
+ * an attempt is a position, decided when the root is known there. The cost of a step grows with the
+ * ranges that it adds, not with the number of positions.
  *
  * The known positions are a function of (now, last) alone. So a step can be undone, and the first
  * instant at which a position became known is found by smaller steps (network_search.c).
  *
- * Positions: with a clock (gap > 0) instant / gap, so ticks with gap 1; where only samples are
- * positions the numbers of samples, from 0. From the first unknown letter on there are two networks,
- * `readings`: the unknown taken for the worse and for the better.
+ * Positions are instant / gap with a clock (gap > 0), so ticks with gap 1; where only samples are
+ * positions, they are sample numbers from 0. From the first unknown letter on there are two networks,
+ * `readings`: unknown input taken for the worse and for the better.
  *
  * Source: Basin, Klaedtke, Zalinescu (2011); docs/explanation/automata.md, section 4. */
 #ifndef RVMON_NETWORK_H
@@ -48,7 +48,7 @@ void copy_network(const form *f, network *made, const network *w);
 bool networks_agree(const form *f, const network *one, const network *other);
 void prune(const form *f, network *w, int64_t position);
 
-/* ---- network_search.c: a lower bound of the instant at which something new of a formula is known */
+/* ---- network_search.c: a lower bound of the instant at which a further position becomes known */
 int64_t earliest_change(const form *f, networks *net, int32_t reading);
 
 /* ---- network_judge.c: attempts that a network judges */
@@ -76,14 +76,14 @@ static inline bool is_spoilt(const judging *g)
     return g->f.monitor->spoilt;
 }
 
-/* How many readings there are at present. */
+/* The number of readings in use. */
 static inline int32_t readings(const judging *g)
 {
     return g->net->parted ? 2 : 1;
 }
 
-/* Whether a judge has to be left alone: memory was short, so that its networks are missing, or hold
- * half a step. */
+/* Whether a judge must not be used any more: memory was short, so its networks are missing or hold half
+ * a step. */
 static inline bool is_given_up(judging *g)
 {
     if ((g->net == NULL) || is_spoilt(g)) {
@@ -99,7 +99,7 @@ static inline attempt *attempt_of(const judging *g, int32_t at)
     return attempt_at(g->r->home, at);
 }
 
-/* The position at which an attempt began; networks keep it in place of a clock. */
+/* The position at which an attempt started; networks keep it in place of a clock. */
 static inline int64_t position_of(const attempt *x)
 {
     return x->clocks[0];
@@ -133,7 +133,7 @@ int64_t step_to_decision(judging *g, int64_t now, int64_t last);
 /* ---- network_judge.c */
 int64_t earliest(const judging *g, int64_t now);
 
-/* ---- network_search.c: what becomes of attempts */
+/* ---- network_search.c: decisions of attempts */
 bool judge_attempt(judging *g, int32_t at, int64_t t);
 int64_t decided_position(const judging *g);
 void judge_added(judging *g, int64_t t);

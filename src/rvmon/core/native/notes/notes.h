@@ -1,5 +1,5 @@
-/* Notes: the raw data from which monitor/reasons derives why an attempt was decided, or is open.
- * notes.c keeps the history of truths as it happens, letters.c the letters of networks, write_notes.c
+/* Notes: the raw data from which rvmon.monitor.notes derives why an attempt was decided, or is open.
+ * notes.c keeps the history of truths as it happens, letters.c the letters of networks; write_notes.c
  * writes a note with each record. Verdicts never depend on notes. */
 #ifndef RVMON_NOTES_H
 #define RVMON_NOTES_H
@@ -21,7 +21,7 @@ void note_undecidable(run *r, int32_t index, int64_t t);
 int64_t begin_of(const run *r, int32_t index, const attempt *x);
 const int64_t *doubt_of(const run *r, int32_t index, const attempt *x);
 
-/* ---- letters.c: the letters by which a network judges */
+/* ---- letters.c: the letters that a network reads */
 void keep_letter(run *r, int32_t index, int64_t t);
 
 /* ---- write_notes.c: writing notes */
@@ -66,7 +66,7 @@ void drop_truths(truths *ring, int32_t words, int64_t oldest);
 bool grow_truths(rv_monitor *m, truths *ring, int32_t words);
 int64_t *next_truths(rv_monitor *m, truths *ring, int32_t words);
 
-/* The notes that stay while others are dropped (rv_trim), copied with their spans. */
+/* The notes that stay while others are dropped (rv_trim): copies of their words and spans. */
 typedef struct {
     int64_t *words;
     span_of_letters *spans;

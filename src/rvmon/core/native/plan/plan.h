@@ -7,7 +7,7 @@
 
 #include "core.h"
 
-/* The sections in order: of each its name, the pointer to it in `plan` (plan_view.h), its records. */
+/* The sections in order, each with its name, the pointer to it in `plan` (plan_view.h), its records. */
 #define PLAN_SECTIONS(SECTION) \
     SECTION(FIELD_FIRST, field_first, int32_t)                     /* [events + 1]: its first field */ \
     SECTION(SUBSCRIPTION_FIRST, subscription_first, int32_t)       /* [names + 1]: the first subscription */ \
@@ -49,12 +49,12 @@ typedef struct {
     int32_t events;
     int32_t fields;
     int32_t requirements;
-    int32_t captured;          /* the most values that an attempt has */
+    int32_t captured;          /* the most values that an attempt captures */
     int32_t filling;           /* 0 */
 } plan_header;
 
 typedef struct {
-    int64_t offset;            /* in bytes from the begin of the plan, a multiple of 8 */
+    int64_t offset;            /* in bytes from the start of the plan, a multiple of 8 */
     int64_t count;             /* number of records */
 } section;
 
@@ -70,9 +70,9 @@ typedef struct {
 } subscription;
 
 /* A part: requirements judged together; one that captures values is alone. REPLAYS: an attempt
- * replays all past samples, as captured values change what was before; KEEPS_PAST: samples are
- * stored for that; FRESH: an instance starts from the state of the root instead; FORGETS: an
- * instance equal to the root can be closed; CAPTURES_NOW: a captured value changes with time alone. */
+ * replays all past samples, as the past depends on captured values; KEEPS_PAST: samples are stored
+ * for that; FRESH: an instance starts from the state of the root instead; FORGETS: an instance equal
+ * to the root can be closed; CAPTURES_NOW: a captured value changes with time alone. */
 enum { PART_REPLAYS = 1, PART_FRESH = 2, PART_FORGETS = 4, PART_KEEPS_PAST = 8, PART_CAPTURES_NOW = 16 };
 
 typedef struct {
@@ -91,7 +91,7 @@ typedef struct {
     int32_t perishable;        /* number of signals that can go stale */
     int32_t clocks;            /* clocks that an attempt needs room for, at least 1 */
     int32_t undetermined;      /* number of judges with a `determined` node */
-    int32_t births;            /* number of signals whose birth is waited for */
+    int32_t births;            /* number of signals whose birth is awaited */
     list stateful;             /* sampled time: nodes to be evaluated at each sample */
     list networked;            /* judges without an automaton */
     /* For a part that captures values. */
@@ -104,10 +104,10 @@ typedef struct {
     int32_t each_event;        /* the event and field that hold the key */
     int32_t each_field;        /* number within its event */
     list captures;             /* programs of the `let` values: offsets in SEC_CODE */
-    list varying_atoms;        /* atoms to read again */
-    list varying_nodes;        /* nodes that depend on its births */
-    list varying;              /* all nodes that depend on these */
-    list lapsed;               /* nodes LAPSED */
+    list varying_atoms;        /* atoms that read captured values */
+    list varying_nodes;        /* nodes above them that carry no memory into an attempt */
+    list varying;              /* all nodes above them */
+    list lapsed;               /* the LAPSED nodes */
     list dead_timers;          /* nodes whose timers are not needed in phase 1 */
     int32_t truths;            /* the form whose truths are recorded over time; -1: none */
     list watches;              /* range of SEC_WATCHES, and next of SEC_GROUPS: coverage */
@@ -120,8 +120,8 @@ typedef struct {
  * a subset, from then on. */
 typedef list phased[2];
 
-/* IGNORES_NAN: NaN is no update; MARKS: `updated` of it is asked; HISTORY: its last two updates are
- * asked; CAPTURED: a `let` reads it. */
+/* IGNORES_NAN: NaN is no update; MARKS: a formula reads `updated` of it; HISTORY: a formula reads its
+ * last two updates; CAPTURED: a `let` reads it. */
 enum { SIGNAL_IGNORES_NAN = 1, SIGNAL_MARKS = 2, SIGNAL_HISTORY = 4, SIGNAL_CAPTURED = 8 };
 
 typedef struct {
@@ -133,11 +133,11 @@ typedef struct {
     phased on_change;          /* atoms to read again when its value changes */
     phased on_update;          /* atoms to read again at each update */
     list on_birth;             /* nodes */
-    list needs;                /* atoms that are momentary if this has a source: see `momentary` */
+    list needs;                /* atoms that are momentary if it has a source: see `momentary` */
     int64_t spare;
 } signal_plan;
 
-/* MARKS: `updated` of it is asked; FIELDS: payloads are read; KEY: its payload selects an instance. */
+/* MARKS: a formula reads `updated` of it, FIELDS: its payloads; KEY: its payload selects an instance. */
 enum { EVENT_MARKS = 1, EVENT_FIELDS = 2, EVENT_KEY = 4 };
 
 typedef struct {
@@ -223,8 +223,8 @@ enum {
  * says whether a member counts; NUMBER: there is no limit, other nodes read the result. */
 enum { WINDOW_FOLD = 15, WINDOW_STRICT = 16, WINDOW_COUNTED = 32, WINDOW_NUMBER = 64 };
 
-/* What a node tells a judge when its truth changes. With LINK_WATCH, which stands alone, `judge` is
- * the number of a watch and weights mean nothing. */
+/* What a node reports to a judge when its truth changes. With LINK_WATCH, which is always alone,
+ * `judge` is the number of a watch and weights have no meaning. */
 enum { LINK_LETTER = 1, LINK_TRIGGER = 2, LINK_DETERMINED = 4, LINK_WATCH = 8 };
 
 typedef struct {
@@ -249,7 +249,7 @@ typedef struct {
     int32_t unborn;            /* TRUE while a signal of the consequent was never known */
     int32_t determined;        /* TRUE from the first position at which the trigger was known */
     int32_t running;           /* FALSE where an episode is over */
-    int32_t blurs;             /* UNKNOWN where one may have begun with other values */
+    int32_t blurs;             /* UNKNOWN where an attempt may have started with other values */
     int32_t owner;             /* the requirement's judge, which counts its attempts */
     int32_t requirement;
     int32_t flags;
@@ -257,8 +257,8 @@ typedef struct {
     int32_t form;              /* number in the part; -1: none */
     int32_t diagram;           /* offset in SEC_INTS of the diagram of letters; -1: a table */
     list propositions;         /* nodes: the propositions of its letters, by digit of the diagram */
-    list leaves;               /* leaves below these, for notes */
-    list names;                /* signals and events (behind all signals) that these read, ascending */
+    list leaves;               /* leaves below the propositions, for notes */
+    list names;                /* signals, then events (numbered after signals), that the leaves read */
     int32_t outcomes[8];       /* verdict + 4 * decision, by the sum of: 1, kept; 2, it cannot pass; 4,
                                 * it cannot fail */
 } judge_plan;
@@ -284,14 +284,14 @@ typedef struct {
     int32_t targets;           /* [targets_count]: locations */
     int32_t sources;           /* [targets_count * clocks]: the old clock kept; -1: reset */
     int32_t time_values;       /* [rows]: TRUE or FALSE if reaching the region decides, else UNKNOWN */
-    int32_t clause_first;      /* [locations + 1]: it holds at the end if some clause has */
-    int32_t test_first;        /* [clauses + 1] */ /* [clauses + 1]: all its tests true: */
-    int32_t tests;             /* [2 * tests]: clock (-1: true); 1: at the end, 0: as time came */
-    int32_t ages;              /* [tests]: the age that clock has at least */
+    int32_t clause_first;      /* [locations + 1]: it is true at the end if one of its clauses is */
+    int32_t test_first;        /* [clauses + 1]: a clause is true if all its tests are */
+    int32_t tests;             /* [2 * tests]: clock (-1: true); 1: age at the end, 0: as time came */
+    int32_t ages;              /* [tests]: the least age of the clock for the test to be true */
     int32_t spare;
 } automaton_plan;
 
-/* A future formula for a network, or, if `windows` is not empty, for a chain of windows. Operands
+/* A future formula for a network or, if `windows` is not empty, for a chain of windows. Operands
  * precede operators; the last operator is the root. */
 typedef struct {
     int64_t reach;             /* ticks until a truth is known or equals a later one; NEVER */
@@ -316,14 +316,14 @@ typedef struct {
                                 * position; -1: past */
     int32_t kind;
     int32_t turned;            /* 1: the dual: `all` instead of `some` of the operands or positions */
-    int32_t kept;              /* 1: counts as true beyond the end of the trace */
+    int32_t kept;              /* 1: it counts as true beyond the end of the trace */
     int32_t left;              /* operand; of a leaf, its number among the leaves */
     int32_t right;             /* second operand; of a leaf, its node, -1: constant */
     list operands;             /* JUNCTION only */
     int32_t values[3];         /* LEAF, by truth: 1 if true for the worse, plus 2 for the better */
 } operator_plan;
 
-/* Coverage: a formula to watch, which is a bin or an occasion. */
+/* Coverage: a watched formula, which is a bin or an occasion. */
 typedef struct {
     int32_t node;
     int32_t is_pulse;          /* 1: true for one position only */

@@ -18,9 +18,9 @@ typedef struct {
     rv_memory from;            /* where chunks come from */
     chunk *chunks;
     char *free;                /* unused rest of the newest chunk */
-    size_t left;               /* its size */
+    size_t left;               /* bytes of that rest */
     size_t used;               /* bytes ever handed out, less those reused */
-    void *spare[SIZE_CLASSES]; /* by size class, list of blocks given back */
+    void *spare[SIZE_CLASSES]; /* by size class, the list of blocks given back */
 } arena;
 
 void *arena_take(arena *a, size_t size);          /* zeroed; NULL: memory is short */
@@ -67,15 +67,15 @@ typedef struct {
     uint64_t dirty_word;       /* the bit of that word in its word of run.dirty_words */
     int32_t word;              /* index of that word in run.dirty */
     int32_t atom;
-    uint8_t truths[3];         /* truth if the value is equal, less, greater: by IS_EQUAL, ... */
+    uint8_t truths[3];         /* by IS_EQUAL, ...: the truth if the value is equal, less, greater */
 } quick_compare;
 
-/* A signal that in phase 1 is read by a few such comparisons only, so that an update can skip the
- * general path. */
+/* A signal that in phase 1 only a few such comparisons read, so that its updates can skip the general
+ * path. */
 typedef struct {
     const quick_compare *compares;
     int32_t count;
-    int32_t kind;              /* kind of its values; RV_UNKNOWN: it is not such a signal */
+    int32_t kind;              /* kind of its values; RV_UNKNOWN: not such a signal */
 } quick_signal;
 
 /* A part of the plan: its ranges of sections as pointers, and tables derived from them once. */
@@ -93,9 +93,9 @@ typedef struct {
     int32_t *timed;            /* by timer number, its node */
     int32_t *perishable;       /* by number among those that go stale, the signal */
     quick_signal *quick;       /* by signal */
-    int32_t *pulses;           /* by atom, its leaf if nothing hears of its end; -1: see input/pulses.c */
+    int32_t *pulses;           /* by atom, its leaf if nothing sees its end; else -1: input/pulses.c */
     int32_t *pulse_doubts;     /* by such an atom, the DOUBT above its leaf; -1: none */
-    int32_t *pulsing;          /* by event, its one atom if nothing but such a pulse reads it; -1 */
+    int32_t *pulsing;          /* by event, its one atom if only such a pulse reads it; else -1 */
     int32_t *networked;        /* judges decided by a network (not by a chain) */
     int32_t networked_count;
     int32_t *slots;            /* by node, its slot in truth_log; -1: notes do not describe it */

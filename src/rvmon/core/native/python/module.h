@@ -2,8 +2,8 @@
  * or columns, attempts go out as objects. It uses the stable ABI only.
  *
  * Two rules shape it. No Python code runs between reading a sample and handing it to the core, so that
- * an interrupt or another thread cannot come in between: what would need Python code is left to a
- * slower path in Python. And nothing handed out refers to the core's memory, so objects may outlive
+ * an interrupt or another thread cannot come in between: samples that would need Python code take a
+ * slower path in Python. And no returned object refers to the core's memory, so objects may outlive
  * their monitor. */
 #ifndef RVMON_MODULE_H
 #define RVMON_MODULE_H
@@ -11,8 +11,8 @@
 #include "core.h"
 #include "python/python_abi.h"
 
-/* Objects that freed pieces of letters held. The core may free pieces where no Python code may run, so
- * they are released later (free_dropped). */
+/* Objects that freed pieces of letters had attached. The core may free pieces where no Python code may
+ * run, so the objects are released later (free_dropped). */
 typedef struct {
     PyObject **dropped;        /* to be released */
     size_t dropped_count;
@@ -21,16 +21,16 @@ typedef struct {
 
 /* A copy of the note of an attempt. */
 typedef struct {
-    int64_t *words;            /* NULL: there is no note; the state of the propositions follows */
-    PyObject *pieces;          /* tuple of the full pieces of letters; NULL: they do not matter */
-    PyObject *last;            /* bytes of the last piece, shared; the first `last_count` words are its
-                                * own */
+    int64_t *words;            /* the note, then the state of the propositions; NULL: there is no note */
+    PyObject *pieces;          /* tuple of the full pieces of letters; NULL: letters do not matter */
+    PyObject *last;            /* bytes of the last piece, shared with other notes, of which the first
+                                * `last_count` words belong to this note */
     int32_t last_count;
     int32_t count;
     int32_t state_count;       /* words of the state; 0: none */
 } note_copy;
 
-/* Fields of a record that are objects; those from REASON on are computed when first asked for. */
+/* Fields of a record that are objects; those from REASON on are computed when first read. */
 enum {
     REQUIREMENT, VERDICT, DECISION, DETAILS, NOTED, REASON, DEADLINE, AT_TRIGGER, AT_DECISION,
     REQUIRED, CAPTURED, BLAME, FORECAST, ROBUSTNESS, OBJECTS
@@ -38,8 +38,8 @@ enum {
 
 enum { UNSET, NEVER_SO_FAR, AT_INSTANT };
 
-/* Words of a note that a record has room for: with its header an object stays below 512 bytes, up to which
- * Python allocates fast. */
+/* Words of a note that fit in a record. With its header, an object then stays below 512 bytes, up to
+ * which Python allocates fast. */
 #define FEW_WORDS 24
 
 typedef struct {
@@ -54,7 +54,7 @@ typedef struct {
     char in_doubt;
     char settling;             /* UNSET, NEVER_SO_FAR: `decided` is None, or AT_INSTANT */
     bool is_worked_out;        /* a field from NOTED on may be set */
-    int64_t few[FEW_WORDS];    /* the words of most notes; nothing else is set by new_record() */
+    int64_t few[FEW_WORDS];    /* the words of short notes; new_record() leaves only these unset */
 } attempt_record;
 
 /* Kinds of a signal's or field's values. */
@@ -79,8 +79,8 @@ typedef struct {
     int64_t nan_first;
 } arrival;
 
-/* Cache: the name that came at this place of the last sample, and its number. Samples mostly bring the
- * same key objects in the same order, so that a pointer comparison replaces the lookup. */
+/* Cache: the name at this place of the last sample, and its number. Samples mostly have the same key
+ * objects in the same order, so that a pointer comparison replaces the lookup. */
 typedef struct {
     PyObject *name;
     int32_t number;
@@ -104,8 +104,8 @@ typedef struct {
     int64_t fields_count;
     int64_t fields_room;
     int64_t fields_most;       /* fields of all events together */
-    int32_t to_come;           /* signals without an update so far */
-    bool is_odd;               /* something in the sample is unknown, or has a payload */
+    int32_t to_come;           /* number of signals without an update so far */
+    bool is_odd;               /* the sample has an unknown value or a payload */
 } intake;
 
 typedef struct {
@@ -114,32 +114,32 @@ typedef struct {
     void *plan;                /* a copy, if `data` is not aligned to 8; else NULL */
     PyObject *data;            /* the plan, which the core reads for all its life */
     rv_sizes sizes;
-    int64_t given;             /* records handed out so far, or left open for good */
+    int64_t given;             /* number of records handed out so far, or left open for good */
     bool held;                 /* Python is in the middle of a call (hold) */
-    bool busy;                 /* C is */
+    bool busy;                 /* C is in the middle of a call */
     intake in;
     int32_t *captured;         /* captured values per attempt, by requirement */
-    PyObject *owner;           /* argument tuple that owns what follows; NULL: collected */
-    PyObject *look_closer;     /* Python's step, for samples that take a closer look */
+    PyObject *owner;           /* argument tuple that owns the next fields; NULL: garbage-collected */
+    PyObject *look_closer;     /* Python's step, for samples that C does not convert */
     PyObject *look_closer_ns;  /* the same for step_ns */
     PyTypeObject *attempt;     /* derived from Record */
     PyObject *ids;             /* names of requirements, by number */
     PyObject *verdicts;
     PyObject *decisions;
-    PyObject *details;         /* computes the late fields of an attempt */
+    PyObject *details;         /* function that computes the late fields of an attempt */
     PyObject *nothing;         /* an empty tuple, returned by most steps */
-    PyObject *many;            /* makes a lazy sequence of attempts from records, or None */
+    PyObject *many;            /* function that makes a lazy sequence from records, or None */
     note_cache notes;
     int64_t keep;              /* rv_keep's number; -1: all are kept */
     struct figures *figures;   /* how margins are made into objects; NULL: steps return attempts */
 } monitor;
 
-/* Calls that return more attempts than this return a lazy sequence instead, so that a million decisions
- * cost what is looked at. */
+/* Calls that return more attempts than this return a lazy sequence, so that of a million decisions only
+ * those that are read cost time. */
 enum { MOST_AT_ONCE = 4096 };
 
 /* Copies of records, each with room for the most captured values of any requirement. They have to be
- * copies: making objects of them may run the garbage collector, and that arbitrary code, even steps of
+ * copies: making objects from them may run the garbage collector, and so arbitrary code, even steps of
  * this monitor. */
 typedef struct {
     monitor *c;
@@ -153,9 +153,9 @@ typedef struct {
 
 typedef int (*telling)(rv_monitor *m, int64_t t, const int32_t *names, int32_t count);
 
-/* What figures are made of. */
+/* The types from which figures are made. */
 struct figures {
-    PyObject *owner;           /* argument tuple that owns what follows */
+    PyObject *owner;           /* argument tuple that owns the next fields */
     PyTypeObject *measured;    /* derived from Figure */
     PyTypeObject *robustness;  /* derived from Bounds */
 };

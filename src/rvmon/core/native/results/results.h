@@ -19,8 +19,8 @@ void watch(run *r, int64_t t);
 void end_watch(run *r, int64_t end, int64_t reached);
 
 /* ---- cover.c: hits of coverpoints and crosses */
-/* The combinations of some bins of each axis; the last axis varies fastest. Bins are numbered within
- * their axis. */
+/* Iterates over the combinations of chosen bins of each axis, the last axis fastest. Bins are numbered
+ * within their axis. */
 typedef struct {
     int32_t begin[AXES_MOST];  /* places in `bins` of coverage */
     int32_t end[AXES_MOST];
@@ -49,7 +49,7 @@ typedef struct {
     int64_t *words;
     int64_t room;
     int64_t count;
-    int64_t now;               /* the instant that others are relative to */
+    int64_t now;               /* the instant to which all others are relative */
     int64_t next;              /* the next instant at which time alone may change something */
 } situation;
 

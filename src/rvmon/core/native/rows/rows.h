@@ -2,8 +2,8 @@
  * compared column by column, without branches where possible, and only rows at which something can
  * change are judged as samples (rv_step). The result is the same as judging each row.
  *
- * Two row masks per column: `said`, it has an update; `needed`, the core has to see that update. A row is
- * judged if some column tells, or something is due by then. */
+ * Each column has two row masks: `said`, it has an update; `needed`, the core has to see that update. A
+ * row is judged if a column needs it, or if something is due by then. */
 #ifndef RVMON_ROWS_H
 #define RVMON_ROWS_H
 
@@ -12,12 +12,12 @@
 /* In `says` of a column: no update. */
 #define NO_UPDATE 255
 
-/* Rows that are examined together, a bit each. */
+/* Number of rows examined together, one bit each. */
 #define TOGETHER 64
 
-/* Which updates of a name can change something, from all to few; smaller is stricter. */
+/* Which updates of a name can change something; a smaller number is the stricter choice. */
 enum {
-    NO_UPDATES,                /* it is not read */
+    NO_UPDATES,                /* none: it is not read */
     EACH_UPDATE,
     EACH_VALUE,                /* those that change its value */
     BY_CONSTANTS,              /* those that change the outcome of a comparison with a constant */
@@ -33,14 +33,14 @@ typedef struct {
     int32_t fields;            /* fields of an event that the column gives */
     bool is_event;
     bool ignores_nan;
-    bool perishable;           /* updates postpone that it goes stale */
-    bool is_plain;             /* its comparisons influence attempts only: measured.c */
-    bool is_idle;              /* and no attempt is open */
+    bool perishable;           /* its updates postpone its going stale */
+    bool is_plain;             /* its comparisons influence only attempts: measured.c */
+    bool is_idle;              /* the same, and no attempt is open */
     bool is_counted;           /* its values reach nothing but bins: counted.c */
     rv_number last;            /* its last value in the rows examined so far */
-    span between;              /* a value in it, or equal to `last`, compares as `last` does */
+    span between;              /* values in it, or equal to `last`, compare as `last` does */
     uint64_t said;             /* rows with an update, as bits */
-    uint64_t needed;           /* those the core has to see */
+    uint64_t needed;           /* rows that the core has to see */
 } column_watch;
 
 /* A node over some rows, as bits: those at which it is TRUE, and at which it is FALSE. */
@@ -49,21 +49,21 @@ typedef struct {
     uint64_t is_false;
 } node_rows;
 
-/* What the columns that are counted have to do with a node. */
+/* How a node depends on counted columns. */
 enum {
     READS_NONE,
-    READS_COLUMN,              /* one reaches it */
-    READS_MORE                 /* and from it more than bins: such a column is not counted after all */
+    READS_COLUMN,              /* a column reaches it */
+    READS_MORE                 /* and from it more than bins: that column is not counted after all */
 };
 
 /* Counting in bulk, in a monitor that only counts. */
 typedef struct {
-    node_rows *rows;           /* by node, of those in `nodes` */
+    node_rows *rows;           /* by node, for those in `nodes` */
     uint8_t *reads;            /* by node: READS_... */
     int32_t *nodes;            /* the nodes that counted columns reach, operands first */
     uint64_t *bits;            /* by watch, whether it is true in some row */
-    uint8_t *is_bulk;          /* by group, whether it is sampled at all rows, and its bins last */
-    int32_t count;             /* of `nodes` */
+    uint8_t *is_bulk;          /* by group, whether it is sampled at all rows and its bins last */
+    int32_t count;             /* number of `nodes` */
 } counting;
 
 /* A sample assembled from rows. */
@@ -83,17 +83,17 @@ typedef struct {
     int32_t columns;
     row_sample sample;
     int64_t first;             /* the first row examined */
-    int64_t together;          /* rows examined; 0: none are */
+    int64_t together;          /* number of rows examined */
     int64_t fresh;             /* updates before this row have postponed staleness */
     uint64_t moved;            /* rows at which something may change, as bits from `first` */
     bool known;                /* `how` of the columns is final: every part is in phase 1 */
-    bool perishes;             /* some column is of a signal that goes stale */
+    bool perishes;             /* some column belongs to a signal that goes stale */
     counting *counting;        /* NULL: the monitor does more than count */
     bool counts;               /* the rows examined are counted in bulk */
     int64_t counted;           /* the end of the rows that the run has yet to catch up with; 0: none */
-    double *leaves[2];         /* margins: scratch for the leaves of rows, at least and at most */
+    double *leaves[2];         /* margins: scratch for the leaves of rows, lower and upper bounds */
     int32_t leaves_room;       /* capacity, in values per row */
-    int64_t unsettled;         /* rows since margins were last settled */
+    int64_t unsettled;         /* number of rows since margins were last settled */
 } batch;
 
 static inline home *home_of(const batch *s, const column_watch *w, int32_t reader)
@@ -111,7 +111,7 @@ static inline bool bit_at(uint64_t word, int64_t place)
     return ((word >> place) & 1U) != 0U;
 }
 
-/* A mask of the bits below a place, which is 64 at most. */
+/* A mask of the bits below a place, which is at most 64. */
 static inline uint64_t bits_before(int64_t place)
 {
     return (place >= TOGETHER) ? ~UINT64_C(0) : ((UINT64_C(1) << place) - 1);
@@ -133,7 +133,7 @@ static inline uint64_t bits_of(const uint8_t *one)
     return word;
 }
 
-/* Words of as many bits as a part has watches. */
+/* Number of words that hold one bit per watch of a part. */
 static inline size_t words_of_watches(const part_plan *p)
 {
     return ((size_t)p->watches.count + 63U) / 64U;

@@ -1,8 +1,8 @@
 /* Runs: the state of a part of the plan as samples and time pass. A part without captured values is
  * one run; for one with `let` or `for each` these files create, fork, replay and release runs.
  *
- * The order at one position (clock.c): outages end; timers fire; atoms valid at the last position
- * only are read again; changed nodes are evaluated; judges whose letter or trigger changed move
+ * The order of work at a position (clock.c): outages end; timers fire; atoms valid only at the last
+ * position are read again; changed nodes are evaluated; judges whose letter or trigger changed move
  * their attempts; new attempts start; failed episodes restart. */
 #ifndef RVMON_RUNS_H
 #define RVMON_RUNS_H

@@ -1,9 +1,8 @@
-/* Snapshots: a run as bytes. One description serves for writing and reading: each carry_... function
- * visits the fields of something in order, and either writes them or reads them, so the two cannot
- * differ.
+/* Snapshots: a run as bytes. The same code writes and reads: each carry_... function visits the fields
+ * of something in order and either writes or reads them, so writing and reading cannot differ.
  *
- * What follows from other state is not stored but rebuilt: heaps, free lists, links, sums, spans,
- * capacities. What is read is checked against the plan and against what was read before; after the
+ * State that follows from other state is not stored but rebuilt: heaps, free lists, links, sums, spans,
+ * capacities. Everything read is checked against the plan and against what was read before. After the
  * first misfit nothing more is read, and the caller discards the monitor. */
 #ifndef RVMON_SNAPSHOT_H
 #define RVMON_SNAPSHOT_H
@@ -18,11 +17,11 @@ typedef struct {
     size_t at;                 /* offset reached */
     size_t size;               /* bytes to read */
     bool reading;
-    bool refused;              /* something read does not fit */
-    uint8_t *begins;           /* while notes are read: for each word, what begins there */
+    bool refused;              /* something that was read does not fit */
+    uint8_t *begins;           /* while notes are read: for each word, what starts there */
 } carrier;
 
-/* Whether carrying has stopped: a misfit, or memory was short. */
+/* Whether carrying has stopped, because of a misfit or because memory was short. */
 static inline bool is_lost(const carrier *c)
 {
     return c->refused || c->m->spoilt;
@@ -34,7 +33,7 @@ static inline void demand(carrier *c, bool so)
     c->refused = c->refused || (c->reading && !so);
 }
 
-/* ---- snapshot_fields.c: integers in little-endian order; bounds are those demanded on reading */
+/* ---- snapshot_fields.c: integers in little-endian order; the bounds are checked on reading */
 void carry_byte(carrier *c, uint8_t *x, uint8_t most);
 void carry_bytes(carrier *c, uint8_t *x, int64_t count, uint8_t most);
 void carry_flag(carrier *c, bool *x);
@@ -42,14 +41,14 @@ void carry_int(carrier *c, int32_t *x, int64_t low, int64_t behind);
 void carry_count(carrier *c, uint32_t *x);
 void carry_word(carrier *c, uint64_t *x);
 void carry_long(carrier *c, int64_t *x, int64_t low, int64_t most);
-/* An instant in range; or that, or the value `none`. */
+/* An instant in range; carry_instant_or() also allows the value `none`. */
 void carry_instant(carrier *c, int64_t *x);
 void carry_instant_or(carrier *c, int64_t *x, int64_t none);
 void carry_number(carrier *c, rv_number *x);
 /* A count of items that take at least `each` bytes, so that a forged count cannot ask for more memory
  * than there are bytes. */
 void carry_size(carrier *c, int32_t *x, int64_t most, size_t each);
-/* A list of distinct numbers below `behind`, in order; marked in `listed` unless that is NULL. */
+/* A list of distinct numbers below `behind`, in order; marks them in `listed` unless it is NULL. */
 void carry_list(carrier *c, int32_t *items, int32_t *count, int32_t behind, uint8_t *listed);
 /* Timers in heap order, so that the heap is restored as it was; `numbers` renames ids if not NULL. */
 void carry_timers(carrier *c, timers *h, int32_t ids, const int32_t *numbers);

@@ -1,14 +1,14 @@
 /* Chains of windows: windows nested in windows over one Boolean combination of leaves, e.g. F[0, 3 s]
  * G[0, 1 s] p, perhaps required until something ends it, or excused where something holds.
  *
- * A special case of a delay network (networks/) with a cheaper form: what is known of a chain is known
- * in the order of positions, so a list of the positions at which each level's value changes is all its
- * state. chain.c keeps these lists; windows.c judges attempts by them, and has the rings that they
- * are.
+ * A chain is a special case of a delay network (networks/) with a cheaper form. Its values become known
+ * in the order of positions, so its whole state is, for each level, the list of positions at which the
+ * value changes. chain.c keeps these lists; windows.c judges attempts by them, and has the rings that
+ * store the lists.
  *
- * Positions are ticks / gap, or the instants of samples where only these are positions (`sparse`). A
- * *stamp* is a point in the order of knowledge: 2 t as time comes to t, 2 t + 1 as the letter there is
- * known. */
+ * Positions are ticks / gap, or the instants of samples where only samples are positions (`sparse`). A
+ * *stamp* is a point in the order of knowledge: 2 t when time comes to t, 2 t + 1 once the letter at t
+ * is known. */
 #ifndef RVMON_WINDOWS_H
 #define RVMON_WINDOWS_H
 
@@ -21,11 +21,11 @@ void chain_pass(run *r, int32_t index, int64_t t, bool is_position);
 bool chain_enter(run *r, int32_t index, int32_t at, int64_t t);
 bool chain_outlasts(run *r, int32_t index, const attempt *x, int64_t end, int64_t reached);
 
-/* Later than all stamps, and than all positions. */
+/* Later than all stamps and all positions. */
 #define NEVER_KNOWN (NEVER - 1)
 
-/* What a letter consists of: the base below the windows; the leaf that ends what is required; the leaf
- * where it is excused. Each 1 if true for the worse, plus 2 if true for the better. */
+/* The parts of a letter: the base below the windows; the leaf that ends the obligation; the leaf that
+ * excuses it. Each is 1 if true for the worse, plus 2 if true for the better. */
 enum { BASE, LEFT, EXCUSED, FOLLOWED };
 
 /* A judge with its chain; windows are levels 1 to `depth`, the base is level 0. */
