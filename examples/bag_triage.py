@@ -1,6 +1,6 @@
-"""Which bags of the night need a look? Those that failed come first, with the cause.
+"""List which bags of last night need a look: failed ones first, each with the cause.
 
-python examples/bag_triage.py FOLDER    # of .bag and .mcap files, and folders of ROS 2
+python examples/bag_triage.py FOLDER    # with .bag and .mcap files, and ROS 2 bag folders
 """
 
 import sys
@@ -11,11 +11,11 @@ import rvmon
 
 HERE = Path(__file__).parent
 ORDER = ["F", "?", "I", "NT", "P"]
-"""What needs a look first: failures, recordings that cannot be read, what was left open."""
+"""The order of urgency: failures, unreadable recordings (`?`), inconclusive verdicts, the rest."""
 
 
 def bags_in(folder: Path) -> Iterator[Path]:
-    """The recordings in a folder, and in its folders."""
+    """The recordings in a folder and its subfolders."""
     for path in sorted(folder.iterdir()):
         if path.suffix in (".bag", ".mcap") or (path / "metadata.yaml").is_file():
             yield path
@@ -24,7 +24,7 @@ def bags_in(folder: Path) -> Iterator[Path]:
 
 
 def look(spec: rvmon.Spec, bag: Path) -> tuple[str, str]:
-    """The worst verdict on a bag, and why."""
+    """The worst verdict on a bag, with the first attempt that has it, or the names if all pass."""
     try:
         report = spec.evaluate(bag)
     except rvmon.TraceError as error:
@@ -35,7 +35,7 @@ def look(spec: rvmon.Spec, bag: Path) -> tuple[str, str]:
 
 
 def triage(folder: Path) -> list[tuple[str, str, str]]:
-    """Verdict, bag and cause, the worst first."""
+    """Verdict, bag and cause of each bag, the worst first."""
     spec = rvmon.load(HERE / "base.rv").reading(binding=HERE / "base.toml")
     found = [(*look(spec, bag), str(bag.relative_to(folder))) for bag in bags_in(folder)]
     found.sort(key=lambda one: (ORDER.index(one[0]), one[2]))

@@ -10,7 +10,7 @@ HERE = Path(__file__).parent
 spec = rvmon.load(HERE / "base.rv")
 monitor = spec.monitor()
 with open(HERE / "base.csv", newline="", encoding="utf-8") as file:
-    for row in csv.DictReader(file):  # stands for the callback of a robot's middleware
+    for row in csv.DictReader(file):  # in place of a callback of the robot's middleware
         values = {"speed": float(row["speed"]), "obstacle": float(row["obstacle"])}
         if row["stop_request"]:
             values["stop_request"] = True

@@ -1,4 +1,4 @@
-"""A controller in an event loop: its monitor sees that the base does not stop, and brakes."""
+"""A controller in an event loop: if the monitor reports that the base does not stop, it brakes."""
 
 import asyncio
 from pathlib import Path
@@ -10,12 +10,12 @@ SPEC = Path(__file__).parents[1] / "base.rv"
 
 
 class Base:
-    """Its ordinary brake is broken."""
+    """A base with a broken brake."""
 
     speed = 0.8
 
     def brake(self):
-        """Nothing happens."""
+        """Do nothing."""
 
     def emergency_stop(self):
         self.speed = 0.0
@@ -27,7 +27,7 @@ async def main():
         live.offer({"speed": base.speed, "obstacle": 2.0})
         live.offer({"stop_request": True})
         base.brake()
-        await failed.wait()  # nothing comes: time alone decides
+        await failed.wait()  # no sample comes: the deadline decides
         base.emergency_stop()
         live.offer({"speed": base.speed})
     (report,) = live.close()[""]

@@ -2,7 +2,7 @@
 
 
 class Base:
-    """Each state is the method of its name, which says how fast the base is to be."""
+    """The base. Each state is a method of its name, which returns the wanted speed in m/s."""
 
     stop_m = 1.5
     slow_m = 3.0
@@ -14,7 +14,7 @@ class Base:
         self.state = "drive"
 
     def step(self, person_m: float, seconds: float) -> None:
-        """Look at the nearest person, choose a state, and move."""
+        """Choose a state by the distance of the nearest person, and move."""
         self.state = self.next_state(person_m)
         wanted: float = getattr(self, self.state)()
         change = self.braking * seconds

@@ -19,30 +19,30 @@ CORRIDOR_M = 12.0
 
 
 class Person(msgspec.Struct, frozen=True):
-    """Somebody who crosses the corridor."""
+    """A person who crosses the corridor."""
 
     start_s: Annotated[float, msgspec.Meta(ge=-10, le=60)]
     at_m: Annotated[float, msgspec.Meta(ge=0, le=CORRIDOR_M)]
     pace: Annotated[float, msgspec.Meta(ge=0.3, le=2)]
 
     def distance(self, x_m: float, seconds: float) -> float:
-        """Metres from the base while the person is there."""
+        """The distance from the base in metres; 100 while the person is not in the corridor."""
         y_m = self.pace * (seconds - self.start_s) - 3
         return hypot(self.at_m - x_m, y_m) if abs(y_m) <= 3 else 100.0
 
 
 class Walk(cdv.Test):
-    """A test: who crosses where and when."""
+    """A test: the people who cross, with place and time."""
 
     people: tuple[Person, ...]
     removable = ("people",)
 
 
 class Corridor:
-    """The system under test: `play` is all that a campaign asks of it."""
+    """The system under test; a campaign only needs its method `play`."""
 
     def play(self, test: Walk, observer: cdv.Observer) -> cdv.Run:
-        """Drive until the base has arrived, or time is over."""
+        """Drive until the base has arrived, or until the horizon."""
         base = BrakesLate(CORRIDOR_M) if test.mutation == "brakes-late" else Base(CORRIDOR_M)
         states = []
         for t_ns in range(0, HORIZON_NS, STEP_NS):
@@ -59,7 +59,7 @@ class Corridor:
 
 
 def walks(strategy: str, count: int, seed: int) -> list[Walk]:
-    """Up to three people, anywhere and at any time, or about where the base will be then."""
+    """Tests with up to three people, who cross anywhere and at any time, or near the base."""
     tests = []
     for number in range(count):
         rng = random.Random(f"{strategy}/{seed}/{number}")
@@ -74,7 +74,7 @@ def walks(strategy: str, count: int, seed: int) -> list[Walk]:
 
 
 def directed(_count: int, _seed: int) -> list[Walk]:
-    """People in its way and at its goal: a base with a planted fault does not stop for them."""
+    """Tests with people in the way and at the goal; one has a planted fault, which B2 must find."""
     crossing = (Person(0.0, 5.0, 0.4), Person(2.0, 3.4, 0.4))
     good = Walk(
         name="gives-way",
@@ -86,7 +86,7 @@ def directed(_count: int, _seed: int) -> list[Walk]:
     make = partial(msgspec.structs.replace, good, expected={"B3": "P"})
     leaves, comes = Person(11.8, CORRIDOR_M, 1.0), Person(10.6, CORRIDOR_M, 0.5)
     slow = {"transitions": ["slow → arrived"]}
-    late = {"transitions": ["wait → arrived"]}  # it waits as it crosses the line
+    late = {"transitions": ["wait → arrived"]}  # it reaches its goal while it brakes to wait
     return [
         good,
         make(name="brakes-late", mutation="brakes-late", expected={"B2": "F"}),

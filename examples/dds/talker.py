@@ -1,4 +1,4 @@
-"""A base that comes too near, and does not stop when it is asked to: ROS 2 on the wire, no ROS."""
+"""A base that comes too near and does not stop on request, in the ROS 2 wire format without ROS."""
 
 import sys
 import time
@@ -32,7 +32,7 @@ def main():
     speed, obstacle = published(here, "speed", Float64), published(here, "obstacle", Float64)
     stop_request = published(here, "stop_request", Bool)
     while not all(topic.get_matched_subscriptions() for topic in (speed, obstacle, stop_request)):
-        time.sleep(0.05)  # nobody listens yet
+        time.sleep(0.05)  # wait for the subscriber
     speed.write(Float64(0.8))
     for metres in (2.0, 1.0, 0.4):
         obstacle.write(Float64(metres))

@@ -1,4 +1,4 @@
-"""A drone in the wind: judged while it flies, and afterwards by how much it kept its fence."""
+"""A drone in the wind: verdicts while it flies, and afterwards its margin to the fence."""
 
 import sys
 from pathlib import Path
@@ -6,11 +6,11 @@ from pathlib import Path
 import rvmon
 
 HERE = Path(__file__).parent
-STEP_S, FASTEST = 0.1, 4.0  # m/s against the air
+STEP_S, FASTEST = 0.1, 4.0  # s; m/s relative to the air
 
 
 def flight(wind):
-    """Samples of a flight to a point 40 m in the east and back, with a wind from the west, m/s."""
+    """Samples of a flight to a point 40 m in the east and back; the wind is from the west, m/s."""
     x, height, battery, goal = 0.0, 0.0, 1.0, 40.0
     for step in range(800):
         values = {"x": x, "y": 0.0, "height": height, "battery": battery}
@@ -29,7 +29,7 @@ def main(wind):
     spec = rvmon.load(HERE / "fence.rv")
     monitor = spec.monitor()
     for t, values in flight(wind):
-        for attempt in monitor.step(t, values):  # in the callback of a position, on a real drone
+        for attempt in monitor.step(t, values):  # on a real drone, in the callback of positions
             print(attempt)
     for name, verdict in monitor.finish().verdicts.items():
         print(name, verdict)

@@ -1,4 +1,4 @@
-"""A test of launch_testing: its base is judged while it drives.
+"""A launch_testing test that judges the launched base while it drives.
 
 It was run with stand-ins for launch_testing and rclpy, not with ROS.
 """

@@ -1,4 +1,4 @@
-"""An agent learns when a person has to reach so that the gripper closes on the hand."""
+"""Learn when a person has to reach so that the gripper closes on the hand."""
 
 import random
 import sys
@@ -17,7 +17,7 @@ SEED, EPISODES, ACTIVATE, FIRST, LAST = 4, 100, 100, 130, 300
 
 
 def play(env, reach):
-    """An episode in which the person reaches at a step: its reward, and the verdict of R5."""
+    """Play an episode in which the person reaches at a step; return its reward and R5's verdict."""
     plan = {ACTIVATE: "activate the robot"}
     plan |= {reach: "reach for the piece", reach + 1: "close the hand"}
     env.reset(seed=SEED)

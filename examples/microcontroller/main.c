@@ -1,9 +1,9 @@
 /* A monitor on a Cortex-M4, without an operating system, a heap, or printf.
  *
- * Samples of a recording stand for what the sensors of a robot say; what is decided goes to the
- * debugger (semihosting), as it would to a serial line.
+ * The samples of a recording replace the sensors of a robot. Verdicts go to the debugger
+ * (semihosting); on a robot they might go to a serial line.
  */
-#include "rows.h" /* by run.py: the plan, rows[] of samples, ATTEMPTS, MEMORY */
+#include "rows.h" /* written by run.py: the plan, rows[] of samples, ATTEMPTS, MEMORY */
 
 #define SYSTICK ((volatile uint32_t *)0xE000E010) /* control, reload, value */
 
@@ -62,8 +62,8 @@ void reset(void)
     const size_t reserved = m == NULL ? 0 : rv_memory_used(m);
     SYSTICK[1] = 0xFFFFFF;
     for (size_t row = 0; code == RV_OK && row < sizeof rows / sizeof *rows; row++) {
-        SYSTICK[2] = 0; /* any value begins again */
-        SYSTICK[0] = 5; /* the clock of the processor, no interrupt */
+        SYSTICK[2] = 0; /* writing any value resets the counter */
+        SYSTICK[0] = 5; /* enable, processor clock, no interrupt */
         code = rv_step(m, rows[row].t, updates, rows[row].count);
         const uint32_t took = 0xFFFFFF - SYSTICK[2];
         ticks += took;

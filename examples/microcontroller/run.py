@@ -1,4 +1,4 @@
-"""Build a monitor for a Cortex-M4, feed a recording to it under QEMU, compare the verdicts.
+"""Build a monitor for a Cortex-M4, feed it a recording under QEMU, and compare the verdicts.
 
 python run.py [SPEC RECORDING]
 """
@@ -13,7 +13,7 @@ import rvmon
 
 HERE = Path(__file__).parent
 DEFAULT = HERE.parent / "base.rv", HERE.parent / "base.csv"
-ATTEMPTS = 16  # so many may be open at once
+ATTEMPTS = 16  # the most attempts that may be open at once
 FLAGS = "-std=c99 -mcpu=cortex-m4 -mthumb -Os -ffp-contract=off -ffunction-sections -fdata-sections"
 LINK = f"-nostartfiles --specs=nosys.specs -Wl,--gc-sections -T{HERE / 'board.ld'}"
 BOARD = "-machine mps2-an386 -display none -icount shift=0 -chardev stdio,id=host"
@@ -21,7 +21,7 @@ HOST = "-semihosting-config enable=on,target=native,chardev=host"
 
 
 def header(prefix, spec, samples):
-    """The recording as C: instants, and the updates of all one behind the other."""
+    """The recording as C: instant and number of updates per sample, and all updates in a row."""
     number = {name: place for place, name in enumerate([*spec.schema.signals, *spec.schema.events])}
     yield f'#include "{prefix}_plan.h"'
     yield f"#define PLAN {prefix}_plan"
@@ -68,7 +68,7 @@ def main(spec_path, recording):
             f"qemu-system-arm {BOARD} {HOST} -kernel {made}/board.elf"
         ).splitlines()
     code, total, most, begun, reserved, used = map(int, last.split())
-    # The timer runs at 25 MHz, and QEMU executes an instruction in a nanosecond.
+    # The timer runs at 25 MHz and QEMU executes an instruction per ns: 40 instructions per tick.
     print(*records, f"{40 * total} instructions, at most {40 * most} for a sample", sep="\n")
     print(f"{begun} bytes to begin, {reserved} with {ATTEMPTS} attempts, {used} at the end")
     found = spec.evaluate(recording).attempts

@@ -1,4 +1,4 @@
-"""Two bases over MQTT: the left one comes too near and does not stop, the right one does."""
+"""Two bases over MQTT: the left one comes too near and does not stop, the right one stops."""
 
 import sys
 import time

@@ -1,4 +1,4 @@
-"""Judge a folder of logs on all cores, keep a Parquet of the verdicts, ask DuckDB what fails where.
+"""Judge a folder of logs on all cores, write the verdicts to Parquet, and query them with DuckDB.
 
 python examples/nightly/nightly.py LOGS verdicts.parquet
 """
@@ -25,7 +25,7 @@ WORST = """
 
 
 def main(logs: str, out: str) -> None:
-    """Judge, write, ask."""
+    """Judge the logs, write the verdicts, and print which requirements fail in which log."""
     spec = rvmon.load(Path(__file__).parents[1] / "base.rv")
     paths = sorted(map(str, Path(logs).glob("**/*.csv")))
     reports = spec.evaluate_many(paths, jobs=os.cpu_count() or 1)

@@ -1,10 +1,10 @@
-"""Tests of a base: `pytest` judges what each does, and `stop.rv` on each recording."""
+"""Tests of a base: `pytest` judges the run of each test, and each recording, by `stop.rv`."""
 
 import pytest
 
 
 def drive(braking, seconds=3.0, step_s=0.05):
-    """A base that is asked to stop after a second: its samples."""
+    """Samples of a base that is requested to stop after a second."""
     t, speed = 0.0, 0.8
     while t <= seconds:
         yield t, {"speed": speed, "stop_request": abs(t - 1.0) < step_s / 2}

@@ -1,4 +1,4 @@
-"""A base that comes too near, and does not stop when it is asked to: a node of ROS 1."""
+"""A ROS 1 node of a base that comes too near and does not stop on request."""
 
 import rospy
 from std_msgs.msg import Empty, Float64
@@ -8,7 +8,7 @@ speed = rospy.Publisher("/speed", Float64, queue_size=10)
 obstacle = rospy.Publisher("/obstacle", Float64, queue_size=10)
 stop_request = rospy.Publisher("/stop_request", Empty, queue_size=10)
 while not all(topic.get_num_connections() for topic in (speed, obstacle, stop_request)):
-    rospy.sleep(0.05)  # nobody listens yet
+    rospy.sleep(0.05)  # wait for the subscriber
 speed.publish(0.8)
 for metres in (2.0, 1.0, 0.4):
     obstacle.publish(metres)

@@ -1,6 +1,6 @@
-// A node of ROS 2 on the robot itself: base.rv judged in C, without Python. Each verdict is published as a line on `verdicts`, such as `B2#1 F`.
+// A ROS 2 node that judges base.rv on the robot in C, without Python. It publishes each verdict as a line on `verdicts`, such as `B2#1 F`.
 //
-// It was compiled and run against a stub of rclcpp, not with ROS.
+// It was compiled and run with a stub of rclcpp, not with ROS.
 #include "base_plan.h"
 #include "rvmon_core.hpp"
 
@@ -45,8 +45,8 @@ public:
                 }
                 stops_ = message->data;
             });
-        // By the clock of the node, which follows /clock where use_sim_time is set. A deadline is
-        // told so much later at most; its instant is exact.
+        // The node's clock follows /clock if use_sim_time is set. A missed deadline is reported at
+        // most one period late; the decision instant in the record is exact.
         timer_ = rclcpp::create_timer(this, get_clock(), std::chrono::milliseconds(10), [this]() {
             tell(monitor_.advance(now().nanoseconds()));
         });
@@ -55,7 +55,7 @@ public:
 private:
     void step(std::initializer_list<rv_update> updates) { tell(monitor_.step(later(), updates)); }
 
-    // Samples have instants of their own, also where messages come at once.
+    // Each sample needs a later instant than the last, even if two messages arrive at once.
     std::int64_t later() { return last_ = std::max(now().nanoseconds(), last_ + 1); }
 
     void tell(int code)
