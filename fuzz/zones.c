@@ -17,8 +17,8 @@ static bool goes_on(void *context, uint64_t visited, uint64_t waiting)
     return (*left)-- > 0;
 }
 
-static int counts(void *context, const numbers *path, int32_t loop, const int64_t *head,
-                  uint32_t dim)
+static int diverges(void *context, const numbers *path, int32_t loop, const int64_t *head,
+                    uint32_t dim)
 {
     (void)context;
     if ((loop < 0) || (head[0] != 1) || (dim == 0)) { /* each loop has a start */
@@ -30,7 +30,7 @@ static int counts(void *context, const numbers *path, int32_t loop, const int64_
 static answer searched(const int32_t *plan, const double *costs, bool wide, uint64_t most_bytes)
 {
     int left = 20;
-    caller from = {&left, goes_on, counts, 300, most_bytes, false};
+    caller from = {&left, goes_on, diverges, 300, most_bytes, false};
     from.proper_only = (plan[HEAD_BOUND] % 2) == 1;
     return wide ? search_wide(plan, costs, &from) : search_narrow(plan, costs, &from);
 }

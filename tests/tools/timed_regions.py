@@ -31,10 +31,10 @@ from rvmon.models.network.expressions import (
 )
 from rvmon.models.network.guards import (
     compares_of,
+    has_deadlock,
     has_paths,
     is_discrete,
     normal_form,
-    speaks_of_deadlock,
     with_deadlock,
 )
 from rvmon.models.runs import Run
@@ -283,7 +283,7 @@ def instants_of(network: Network, run: Run) -> Instants:
 
 
 def _holds_at_end(network: Network, formula: Expression, last: Configuration) -> bool:
-    if not speaks_of_deadlock(formula):
+    if not has_deadlock(formula):
         return truth_of(formula)(last)
     graph = RegionGraph(network, [formula])
     dead = graph.is_dead(graph.region_of(last))

@@ -23,7 +23,7 @@ from rvmon.models.network import Network, check_clocks
 from rvmon.models.network import expressions as ex
 from rvmon.models.network.derived import Watcher, finer
 from rvmon.models.network.evaluate import Evaluator
-from rvmon.models.network.guards import together
+from rvmon.models.network.guards import conjunction
 from rvmon.models.runs import Action, Position, Run
 from rvmon.models.runs.moves import check_start
 from rvmon.models.search.budget import UNLIMITED, Budget, Meter
@@ -104,7 +104,7 @@ def conform(
     fine, labels = finer(network, network.unit // RESOLUTION), tuple(sorted(observed))
     most = len(network.automata) + 1
     chain, meter = _chain_of(actions, end, tolerance, most), Meter(budget, None)
-    watcher = _following(fine, labels, chain, most)
+    watcher = _follower(fine, labels, chain, most)
     over = watcher.add_location()
     bound = ex.ClockCompare(watcher.clock, ex.ClockOp.GE, ex.Constant(max(0, chain[-1].earliest)))
     watcher.add_edge(over - 1, over, ex.TRUE, [bound], watches=False)
@@ -142,31 +142,33 @@ def _chain_of(actions: Sequence[Recorded], end: int, tolerance: int, most: int) 
 
     def add(t: int, choices: Sequence[tuple[str, ...]], *, last: bool = False) -> None:
         earliest, latest = (t - tolerance) // RESOLUTION, -(-(t + tolerance) // RESOLUTION)
-        behind = None if last else len(chain) + len(choices)
+        after = None if last else len(chain) + len(choices)
         for left in choices:
             done = explained + len(choices[0]) - len(left)
-            chain.append(_Place(t, left, done, earliest, latest, behind))
+            chain.append(_Place(t, left, done, earliest, latest, after))
 
     for t, group in groupby(actions, lambda action: action.t):
         labels = tuple(action.label for action in group)
-        add(t, sorted(_rests(labels, most), key=len, reverse=True))
+        add(t, sorted(_remainders(labels, most), key=len, reverse=True))
         explained += len(labels)
     add(end, [()], last=True)
     return chain
 
 
-def _rests(labels: tuple[str, ...], most: int) -> set[tuple[str, ...]]:
+def _remainders(labels: tuple[str, ...], most: int) -> set[tuple[str, ...]]:
     """The sets of actions of one instant that may remain, from all of them down to a single one."""
     found, waiting = {labels}, [labels]
     while waiting:
-        for _, left in _firsts(waiting.pop(), most):
+        for _, left in _first_moves(waiting.pop(), most):
             if left and left not in found:
                 found.add(left)
                 waiting.append(left)
     return found
 
 
-def _firsts(labels: tuple[str, ...], most: int) -> list[tuple[tuple[str, ...], tuple[str, ...]]]:
+def _first_moves(
+    labels: tuple[str, ...], most: int
+) -> list[tuple[tuple[str, ...], tuple[str, ...]]]:
     """Sets of at most `most` names by which one move explains the first action; what remains."""
     found = []
     others = tuple(dict.fromkeys(name for name in labels[1:] if name != labels[0]))
@@ -179,7 +181,7 @@ def _firsts(labels: tuple[str, ...], most: int) -> list[tuple[tuple[str, ...], t
     return found
 
 
-def _following(
+def _follower(
     network: Network, labels: Sequence[str], chain: Sequence[_Place], most: int
 ) -> Watcher:
     """Build the automaton that follows a recording up to the last of the given places."""
@@ -188,21 +190,21 @@ def _following(
         until = ex.ClockCompare(watcher.clock, ex.ClockOp.LE, ex.Constant(place.latest))
         watcher.add_location([until])
     numbers = {(place.t, place.left): number for number, place in enumerate(chain)}
-    named: dict[tuple[str, ...], ex.Expression] = {(): _named(watcher, labels, ())}
+    named: dict[tuple[str, ...], ex.Expression] = {(): _has_exactly(watcher, labels, ())}
     for number, place in enumerate(chain):
         watcher.add_edge(number, number, named[()])
         since = ex.ClockCompare(watcher.clock, ex.ClockOp.GE, ex.Constant(max(0, place.earliest)))
-        for names, left in _firsts(place.left, most) if place.left else ():
+        for names, left in _first_moves(place.left, most) if place.left else ():
             target = numbers.get((place.t, left)) if left else place.next
             if target is not None and target < len(chain):
-                when = named.setdefault(names, _named(watcher, labels, names))
+                when = named.setdefault(names, _has_exactly(watcher, labels, names))
                 watcher.add_edge(number, target, when, [since])
     return watcher
 
 
-def _named(watcher: Watcher, labels: Iterable[str], names: Sequence[str]) -> ex.Expression:
+def _has_exactly(watcher: Watcher, labels: Iterable[str], names: Sequence[str]) -> ex.Expression:
     """Whether a move has exactly these of the observed names."""
-    return together(
+    return conjunction(
         watcher.has(name) if name in names else ex.UnaryOperation(ex.UnaryOp.NOT, watcher.has(name))
         for name in labels
     )
@@ -212,7 +214,7 @@ def _allowed(
     network: Network, labels: Sequence[str], chain: Sequence[_Place], most: int, meter: Meter
 ) -> tuple[Allowed, ...]:
     """The actions possible at the last place, each with its earliest and latest instant."""
-    watcher, last = _following(network, labels, chain, most), len(chain) - 1
+    watcher, last = _follower(network, labels, chain, most), len(chain) - 1
     end = ex.ClockCompare(watcher.clock, ex.ClockOp.GE, ex.Constant(chain[-1].latest))
     names = {watcher.add_location(kind=ex.LocationKind.URGENT): label for label in labels}
     for place, label in names.items():

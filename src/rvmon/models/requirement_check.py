@@ -18,7 +18,7 @@ from rvmon.models.network import Network, check_clocks
 from rvmon.models.network import expressions as ex
 from rvmon.models.network.derived import finer
 from rvmon.models.network.evaluate import Evaluator, evaluator
-from rvmon.models.network.guards import either, together
+from rvmon.models.network.guards import conjunction, disjunction
 from rvmon.models.network.scope import PlacedSymbol
 from rvmon.models.requirement_observer import Observed
 from rvmon.models.requirement_propositions import NotExpressibleError
@@ -92,7 +92,7 @@ def observe(
             )  # fmt: skip
 
 
-def _problem(
+def _with_monitor(
     network: Network, spec: CheckedSpec, requirement: Requirement
 ) -> tuple[Network, Observed, Obligation]:
     """The network, in finer units if necessary; the same with the monitor of a requirement."""
@@ -121,7 +121,7 @@ def _problem(
     return network, watched, obligation
 
 
-def _in_the_end(
+def _decide_unbounded(
     network: Network, spec: CheckedSpec, requirement: Requirement, meter: Meter
 ) -> tuple[bool | None, Run | None, str]:
     """Decide a requirement without a deadline that no finite run fails.
@@ -129,18 +129,18 @@ def _in_the_end(
     Returns:
         Whether it is met on all runs, `None` if undecided; a run on which it is not; a remark.
     """
-    original, (_, problem, obligation) = network, _problem(network, spec, requirement)
+    original, (_, problem, obligation) = network, _with_monitor(network, spec, requirement)
     met = open_means(obligation.required)
     if met is None and requirement.mode is Mode.WHENEVER and not problem.reads_events:
         # Attempts from one stretch without actions are met alike, so one of them is enough.
         attempts = replace(requirement, mode=Mode.UPON, pulse=True)
-        _, problem, obligation = _problem(network, spec, attempts)
+        _, problem, obligation = _with_monitor(network, spec, attempts)
         met = open_means(obligation.required)
     if met is not False:
         return True, None, "" if met else UNDECIDED_IN_THE_END
     run = None
     # First look where no invariant bounds time: runs that idle there are the shortest.
-    for first in (together((problem.rests, _unbounded(original))), problem.is_open):
+    for first in (conjunction((problem.rests, _unbounded(original))), problem.is_open):
         if run is None and not meter.stopped:
             sought = Sought(Seek.STAY_AFTER, first, problem.is_open)
             run = seek(problem.network, sought, meter, proper_only=True).run
@@ -155,7 +155,7 @@ def _observe(
     network: Network, spec: CheckedSpec, requirement: Requirement, meter: Meter
 ) -> Observation:
     original = network
-    network, problem, obligation = _problem(network, spec, requirement)
+    network, problem, obligation = _with_monitor(network, spec, requirement)
     sought = {"failing": problem.failed, "triggered": problem.triggered, "passing": problem.passed}
     runs = {name: _reached(problem, goal, meter) for name, goal in sought.items()}
     holds: bool | None = runs["failing"] is None
@@ -167,7 +167,7 @@ def _observe(
     elif holds and runs["triggered"] is None:
         remark = "vacuous: no run triggers it"
     elif holds and mtl.horizon(obligation.required) is None:
-        holds, runs["failing"], remark = _in_the_end(original, spec, requirement, meter)
+        holds, runs["failing"], remark = _decide_unbounded(original, spec, requirement, meter)
     return Observation(
         requirement.id, requirement.text, holds, **runs, network=network,
         statistics=meter.statistics(), remark=remark,
@@ -184,7 +184,7 @@ def _unbounded(network: Network) -> ex.Expression:
         )
         for index, automaton in enumerate(network.automata)
     )
-    return together(either(places) for places in free)
+    return conjunction(disjunction(places) for places in free)
 
 
 def _reached(problem: Observed, goal: ex.Expression, meter: Meter) -> Run | None:

@@ -22,7 +22,7 @@ from rvmon.models.network import Network
 from rvmon.models.network import expressions as ex
 from rvmon.models.network.derived import Watcher
 from rvmon.models.network.evaluate import evaluator
-from rvmon.models.network.guards import either, together
+from rvmon.models.network.guards import conjunction, disjunction
 from rvmon.models.requirement_propositions import (
     Ages,
     Edge,
@@ -138,12 +138,12 @@ class Observed:
             *(v.initial for v in network.variables), *(0 for _ in read)
         ]  # fmt: skip
         self._is_ready = bool(evaluator(self._lasting)(*at_start))
-        self._begun: _Site | None = None
+        self._first: _Site | None = None
         if self._is_ready or (bound is not None and bound.bound is Bound.START):
             letter = self._tables.class_of(lambda expression: evaluator(expression)(*at_start))
             edge = self._tables.edge(automaton.initial, (), letter)
             assert edge is not None, "every letter may begin a run"
-            self._begun, _ = self._fresh(edge, ())
+            self._first, _ = self._fresh(edge, ())
         for site in self._waiting:
             self._expand(site)
         self.network = self._watcher.network()
@@ -178,13 +178,13 @@ class Observed:
         """Whether the watcher is in a site that counts."""
         places = []
         for site, place in self._sites.items():
-            shown = self._begun if site.phase is Phase.START and at_start else site
+            shown = self._first if site.phase is Phase.START and at_start else site
             if shown is not None and counts(shown):
                 there = self._watcher.is_in(place)
                 if site.phase is Phase.HELD and site.is_decided:  # decided once time has passed
                     there = ex.BinaryOperation(ex.BinaryOp.AND, there, self._after())
                 places.append(there)
-        return either(places)
+        return disjunction(places)
 
     def _after(self) -> ex.ClockCompare:
         """Whether time has passed since the watcher's last step."""
@@ -196,9 +196,9 @@ class Observed:
         match site.phase:
             case Phase.START:
                 self._follow_none(place, self._is_ready)
-                if self._begun is not None and not self._begun.is_decided:
+                if self._first is not None and not self._first.is_decided:
                     at_once = ex.ClockCompare(self._since, ex.ClockOp.LE, ex.Constant(0))
-                    self._follow(place, self._begun, (at_once,))
+                    self._follow(place, self._first, (at_once,))
             case Phase.IDLE | Phase.READY:
                 self._follow_none(place, site.phase is Phase.READY)
             case Phase.FRESH | Phase.HELD if not site.is_decided:
@@ -214,7 +214,7 @@ class Observed:
             self._watcher.add_edge(place, self._place(_Site(Phase.READY)), held, (), resets)
         if self._pulse or not is_ready:
             for letters, edge in self._tables.edges(self._automaton.initial, ()):
-                when = together((self._triggers, letters))
+                when = conjunction((self._triggers, letters))
                 if when != ex.FALSE:
                     site, started = self._fresh(edge, ())
                     self._watcher.add_edge(place, self._place(site), when, (), started)
@@ -267,7 +267,7 @@ class Observed:
             yield bounds_of(ages), (_LOST, (), ())
             return
         location, clocks, region = held
-        narrowed = self._tables.just_behind(location, clocks, region, ages)
+        narrowed = self._tables.just_after(location, clocks, region, ages)
         edge = self._tables.edge(location, region, letter)
         if narrowed is None or edge is None:
             return

@@ -13,7 +13,7 @@ from rvmon.logic.automaton import NOW, Automaton, row_of
 from rvmon.logic.state_formula import Lapsed, Lost, StateOp, Unborn
 from rvmon.logic.state_formula import State as Proposition
 from rvmon.models.network import expressions as ex
-from rvmon.models.network.guards import either, together
+from rvmon.models.network.guards import conjunction, disjunction
 
 
 class NotExpressibleError(Exception):
@@ -53,9 +53,9 @@ class Labelling:
             case StateOp.NOT, _:
                 return ex.UnaryOperation(ex.UnaryOp.NOT, args[0])
             case StateOp.AND, _:
-                return together(args)
+                return conjunction(args)
             case StateOp.OR, _:
-                return either(args)
+                return disjunction(args)
             case StateOp.SURE, _:  # nothing is unknown
                 return args[0]
             case StateOp.LEAF, ConstantLeaf(value=value):
@@ -110,7 +110,7 @@ class _Cut(NamedTuple):
     """A boundary between regions: the next region starts at `number` units, or just after it."""
 
     number: int
-    behind: bool  # whether the next region starts just after `number`
+    strict: bool  # whether the next region starts just after `number`
 
 
 _Tree = int | tuple[int, "_Tree", "_Tree"]
@@ -200,8 +200,8 @@ class Tables:
         if no == yes:
             return no
         if yes == ex.FALSE:
-            return together((negated(test), no))
-        return together((test, yes)) if no == ex.FALSE else ex.Choice(test, yes, no)
+            return conjunction((negated(test), no))
+        return conjunction((test, yes)) if no == ex.FALSE else ex.Choice(test, yes, no)
 
     # Ages.
 
@@ -229,13 +229,13 @@ class Tables:
         """The condition that ages are in a region."""
         for clock, low, high in self._bounds(location, clocks, region):
             if low is not None:
-                op = ex.ClockOp.GT if low.behind else ex.ClockOp.GE
+                op = ex.ClockOp.GT if low.strict else ex.ClockOp.GE
                 yield ex.ClockCompare(clock, op, ex.Constant(low.number))
             if high is not None:
-                op = ex.ClockOp.LE if high.behind else ex.ClockOp.LT
+                op = ex.ClockOp.LE if high.strict else ex.ClockOp.LT
                 yield ex.ClockCompare(clock, op, ex.Constant(high.number))
 
-    def just_behind(
+    def just_after(
         self, location: int, clocks: Sequence[int], region: Region, ages: Ages
     ) -> Ages | None:
         """Narrow ages to those from which any delay, however short, leads into a region.
@@ -279,7 +279,7 @@ def _cut(ticks: int, unit: int) -> _Cut:
         raise NotExpressibleError("a window does not end at a whole number of the model's units")
     if number >= ex.MAX_TIME:
         raise NotExpressibleError("a window has too many of the model's units")
-    return _Cut(number, behind=rest == 1)
+    return _Cut(number, strict=rest == 1)
 
 
 def negated(one: ex.Expression) -> ex.Expression:

@@ -8,7 +8,7 @@ def search(
     plan: bytes,
     costs: bytes,
     goes_on: Callable[[int, int], int],
-    counts: Callable[[bytes, int, bytes], int],
+    diverges: Callable[[bytes, int, bytes], int],
     most_states: int,
     most_bytes: int,
     proper_only: bool,
@@ -21,7 +21,7 @@ def search(
         costs: float64, one for each edge of the plan.
         goes_on: called from time to time with the numbers of states visited and waiting; 0 stops
             the search.
-        counts: called with the path to a loop, where the loop starts, and the zone there; returns
+        diverges: called with the path to a loop, where the loop starts, and the zone there; returns
             whether time diverges on the loop.
         most_states: the most states to visit; -1: no limit.
         most_bytes: the most bytes of memory in use; -1: no limit.

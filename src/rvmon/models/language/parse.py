@@ -221,7 +221,7 @@ def _parts(text: str, rule: str) -> Iterator[tuple[int, int]]:
     """Split a text into parts that can be left out singly: declarations, edges, queries."""
     if rule not in _TOKENS:
         return
-    begun, word, is_body, brackets = 0, "", False, list[str]()
+    start, word, is_body, brackets = 0, "", False, list[str]()
     for token in _TOKENS[rule].finditer(text):
         kind = token.lastgroup
         if kind == "end" and "{" not in brackets:
@@ -231,11 +231,11 @@ def _parts(text: str, rule: str) -> Iterator[tuple[int, int]]:
         match kind:
             case "firm" | "loose" if kind == "firm" or not brackets:
                 if word != "automaton":
-                    yield begun, token.start()
-                begun, word = token.start(), token[kind]
+                    yield start, token.start()
+                start, word = token.start(), token[kind]
                 brackets.clear()
             case "open" if word == "automaton" and token[0] == "{":
-                begun, word = token.end(), ""
+                start, word = token.end(), ""
                 brackets.clear()
             case "open":
                 if not brackets:
@@ -244,15 +244,15 @@ def _parts(text: str, rule: str) -> Iterator[tuple[int, int]]:
             case "close" if brackets:
                 brackets.pop()
                 if not brackets and is_body and token[0] == "}":
-                    yield begun, token.end()
-                    begun, word = token.end(), ""
+                    yield start, token.end()
+                    start, word = token.end(), ""
             case "close" if token[0] == "}" and rule == "document":  # the end of an automaton
-                yield begun, token.start()
-                begun, word = token.end(), ""
+                yield start, token.start()
+                start, word = token.end(), ""
             case "end" if not brackets:
                 if word != "automaton":
-                    yield begun, token.end()
-                begun, word = token.end(), ""
+                    yield start, token.end()
+                start, word = token.end(), ""
             case _:
                 pass
-    yield begun, len(text)
+    yield start, len(text)

@@ -65,7 +65,7 @@ class StatementBuilder(Transformer[Token, Any]):
         result = kind[0] if kind else None
         return syntax.FunctionText(result, str(name), parameters, body, self._token_span(name))
 
-    def loop_behind(self, meta: Meta, items: Sequence[Any]) -> syntax.Block:
+    def do_while(self, meta: Meta, items: Sequence[Any]) -> syntax.Block:
         span, body = self._span(meta), _statements(items[:1])
         return syntax.Block((*body, syntax.Loop(items[1], body, span)), span)
 
@@ -88,10 +88,10 @@ class StatementBuilder(Transformer[Token, Any]):
         target, sign, value = items
         span = self._span(meta)
         before: tuple[syntax.Statement, ...] = ()
-        behind: tuple[syntax.Statement, ...] = ()
+        after: tuple[syntax.Statement, ...] = ()
         if is_rule(target, "stepped"):  # a[i++] = v: i is incremented afterwards
             base, index, step = target.children
-            target, behind = syntax.Index(base, index, span), (self.step(meta, (index, step)),)
+            target, after = syntax.Index(base, index, span), (self.step(meta, (index, step)),)
         if isinstance(value, tuple):  # a = b = c: first sets b, then sets a to the new value of b
             before, value = value, value[-1].target
         elif isinstance(value, syntax.UpdateText):
@@ -99,7 +99,7 @@ class StatementBuilder(Transformer[Token, Any]):
         if sign not in (":=", "="):
             value = syntax.Binary(BinaryOp(sign[:-1]), target, value, span)
         update = syntax.UpdateText(target, value, span)
-        return (*before, update, *behind) if before or behind else update
+        return (*before, update, *after) if before or after else update
 
     def step(self, meta: Meta, items: Sequence[Any]) -> syntax.UpdateText:
         target, sign = items if items[1] in ("++", "--") else reversed(items)

@@ -16,9 +16,9 @@ static bool note_move(engine *h, walk *w, const int32_t *edges, int n)
         return runs(h) && !h->failed;
     }
     if (!apply(h, w, edges, n)) {
-        const bool numbers_fit = h->failed;
+        const bool update_failed = h->failed;
         h->failed = false; /* the forward search reports it, if it can happen */
-        return numbers_fit && runs(h);
+        return update_failed && runs(h);
     }
     if (!invariant_data_holds(h, &w->there)) {
         return !h->failed;

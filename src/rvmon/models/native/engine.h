@@ -179,7 +179,7 @@ typedef struct {
     uint32_t *triggers, trigger_count, trigger_room;
     /* staying inside */
     int32_t phase; /* 0: on the way to the goal; 1: inside */
-    uint8_t *colours, *been;
+    uint8_t *colours, *marked;
     bound *between;
     table exact;
     uint32_t colour_room, exact_count;

@@ -170,7 +170,7 @@ static bool settle_in_piece(engine *h, bound *z, int k, bool delays, const spot 
 static void enter(engine *h, const bound *z, const spot *here)
 {
     const bool delays = may_delay(h, here);
-    const bool counts = (h->kind == SEEK_LATE) || (h->kind == SEEK_LATE_AFTER);
+    const bool late = (h->kind == SEEK_LATE) || (h->kind == SEEK_LATE_AFTER);
     bound *in = h->inside;
     int k;
     for (k = 0; (k < h->inside_count) && runs(h) && !h->failed; k++) {
@@ -182,7 +182,7 @@ static void enter(engine *h, const bound *z, const spot *here)
         if (!settle_in_piece(h, in, k, delays, here)) {
             continue;
         }
-        if (!counts) {
+        if (!late) {
             find_limits(h, here);
             blur(h, in);
         }
@@ -190,7 +190,7 @@ static void enter(engine *h, const bound *z, const spot *here)
         if (state == NONE) {
             return;
         }
-        if (counts) {
+        if (late) {
             keep_late(h, state, in, k, delays, here);
         } else {
             succeed(h, state, in);

@@ -17,7 +17,7 @@
 
 static uint32_t flags_of(const engine *h, uint32_t n)
 {
-    return (uint32_t)way_of(h, piece_of(h, n))[WAY_SETS];
+    return (uint32_t)buchi_of(h, piece_of(h, n))[BUCHI_SETS];
 }
 
 /* --- successors ------------------------------------------------------------------------------------- */
@@ -39,16 +39,16 @@ static void succeed_in(engine *h, bound *z, int k, uint32_t flags, const spot *h
 }
 
 /* Add a zone after a move, or at the start, in all pieces to which the automaton can go. */
-static void enter_way(engine *h, const bound *z, const spot *here)
+static void enter_run(engine *h, const bound *z, const spot *here)
 {
     const bool delays = may_delay(h, here);
-    const int32_t *way = (h->from_node == NONE) ? NULL : way_of(h, piece_of(h, h->from_node));
-    const int32_t count = (way == NULL) ? h->inside_count : way[WAY_ARCS];
+    const int32_t *buchi = (h->from_node == NONE) ? NULL : buchi_of(h, piece_of(h, h->from_node));
+    const int32_t count = (buchi == NULL) ? h->inside_count : buchi[BUCHI_ARCS];
     int32_t i;
     int tick;
     for (i = 0; (i < count) && runs(h) && !h->failed; i++) {
-        const int k = (way == NULL) ? i : arc_at(h, way[WAY_ARC] + i);
-        if (((way == NULL) && (way_of(h, k)[WAY_STARTS] == 0))
+        const int k = (buchi == NULL) ? i : arc_at(h, buchi[BUCHI_ARC] + i);
+        if (((buchi == NULL) && (buchi_of(h, k)[BUCHI_STARTS] == 0))
             || !holds(h, piece_at(h, k)[ROW_CONDITION], here)) {
             continue;
         }
@@ -70,11 +70,11 @@ static void enter_way(engine *h, const bound *z, const spot *here)
 }
 
 /* Add the successors of a node: after moves, and by crossings as time passes. */
-static void expand_way(engine *h, uint32_t n)
+static void expand_run(engine *h, uint32_t n)
 {
     walk *w = &h->out;
     const int k = piece_of(h, n);
-    const int32_t *way = way_of(h, k);
+    const int32_t *buchi = buchi_of(h, k);
     const bool delays = h->delays[h->nodes[n].state] != 0;
     int32_t i;
     unpack(h, h->nodes[n].state, &w->here);
@@ -83,8 +83,8 @@ static void expand_way(engine *h, uint32_t n)
     w->ordinal = 0;
     h->phase = 1;
     (void)each_move(h, w, take);
-    for (i = 0; delays && h->clocked && (i < 2 * way[WAY_ARCS]) && runs(h) && !h->failed; i++) {
-        const int m = arc_at(h, way[WAY_ARC] + i / 2);
+    for (i = 0; delays && h->clocked && (i < 2 * buchi[BUCHI_ARCS]) && runs(h) && !h->failed; i++) {
+        const int m = arc_at(h, buchi[BUCHI_ARC] + i / 2);
         if ((m != k) && holds(h, piece_at(h, m)[ROW_CONDITION], &w->here)
             && cross(h, w->zone, w->source, k, m, i % 2 == 1, &w->here)) {
             h->link = LINK_CROSSING | (uint32_t)(i % 2);
@@ -102,7 +102,7 @@ static bool in_component(const engine *h, uint32_t n, uint32_t rank)
 
 /* Append a shortest path inside a component, from a node to an edge with a wanted flag, or to the root if
  * no flag is wanted any more. Its flags are removed from `wanted`. Returns its last node, or NONE. */
-static uint32_t tell_part(engine *h, uint32_t from, uint32_t root_node, uint32_t *wanted)
+static uint32_t append_part(engine *h, uint32_t from, uint32_t root_node, uint32_t *wanted)
 {
     const uint32_t rank = h->rank[root_node];
     const uint32_t mark = h->successor_count;
@@ -115,7 +115,7 @@ static uint32_t tell_part(engine *h, uint32_t from, uint32_t root_node, uint32_t
     }
     h->trail[h->trail_count++] = (step){from, NONE, 0, 0};
     for (at = 0; (at < h->trail_count) && (last == NONE) && runs(h); at++) {
-        expand_way(h, h->trail[at].node);
+        expand_run(h, h->trail[at].node);
         for (i = mark; (i < h->successor_count) && (last == NONE) && runs(h); i++) {
             const successor s = h->successors[i];
             const uint32_t flags = s.flags | (in_component(h, s.node, rank) ? flags_of(h, s.node) : 0);
@@ -145,33 +145,33 @@ static uint32_t tell_part(engine *h, uint32_t from, uint32_t root_node, uint32_t
     }
     for (at = i; h->trail[at].parent != NONE; at = h->trail[at].parent) {
         const step to = h->trail[h->trail[at].parent];
-        (void)tell_link(h, h->trail[at].node, to.node, to.link);
+        (void)append_link(h, h->trail[at].node, to.node, to.link);
         *wanted &= ~to.flags;
     }
     return h->trail[last].node;
 }
 
 /* Handle an accepting component: append the path to it, and a loop in it with all wanted flags. */
-static void tell_round(engine *h, uint32_t rank)
+static void append_round(engine *h, uint32_t rank)
 {
     uint32_t wanted = wanted_flags(h);
     uint32_t root_node;
     uint32_t at;
-    int counts = 1;
+    int diverges = 1;
     while (h->rank[h->frames[h->frame_count - 1].node] != rank) {
         h->frame_count--;
     }
     root_node = h->frames[h->frame_count - 1].node;
-    tell_way(h, root_node);
+    append_frames(h, root_node);
     at = root_node;
     do {
-        at = tell_part(h, at, root_node, &wanted);
+        at = append_part(h, at, root_node, &wanted);
     } while ((at != NONE) && ((wanted != 0) || (at != root_node)) && runs(h));
     if (runs(h) && (h->timer == 0)) {
-        counts = ask_counts(h, root_node);
+        diverges = ask_diverges(h, root_node);
     }
     if (runs(h)) {
-        h->ending = (counts != 0) ? END_LOOP : END_ZENO;
+        h->ending = (diverges != 0) ? END_LOOP : END_ZENO;
         h->parts.count = 0;
         h->state = SEARCH_FOUND;
     }
@@ -198,17 +198,17 @@ static void open_node(engine *h, successor s)
     h->frames[h->frame_count++] =
         (frame){s.node, s.link, h->successor_count, h->successor_count};
     if (ends_here(h, s.node)) {
-        tell_way(h, NONE);
+        append_frames(h, NONE);
         h->state = runs(h) ? SEARCH_FOUND : h->state;
         return;
     }
     h->ending = END_REACHED;
-    expand_way(h, s.node);
+    expand_run(h, s.node);
     h->frames[h->frame_count - 1].end = h->successor_count;
 }
 
 /* Leave a node. If it is the root of a component, that component is complete and closed. */
-static void leave_way(engine *h, uint32_t n)
+static void leave_run(engine *h, uint32_t n)
 {
     const uint32_t rank = h->rank[n];
     if (h->roots[h->root_count - 1].number == rank) {
@@ -234,11 +234,11 @@ static void merge(engine *h, successor s)
     }
     top->flags |= flags;
     if ((top->flags & wanted) == wanted) {
-        tell_round(h, top->number);
+        append_round(h, top->number);
     }
 }
 
-static void meet_way(engine *h, successor s)
+static void meet_run(engine *h, successor s)
 {
     if ((s.node >= h->rank_room) || (h->rank[s.node] == 0)) {
         open_node(h, s);
@@ -257,8 +257,8 @@ static void look_for_run(engine *h)
     h->phase = 1;
     h->stem = NONE;
     h->from_node = NONE;
-    enter_way(h, h->out.zone, &h->out.there);
-    go_deep(h, meet_way, leave_way);
+    enter_run(h, h->out.zone, &h->out.there);
+    go_deep(h, meet_run, leave_run);
 }
 
 #endif

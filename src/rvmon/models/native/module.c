@@ -9,7 +9,7 @@
 
 typedef struct {
     PyObject *goes_on;
-    PyObject *counts;
+    PyObject *diverges;
     PyThreadState *thread;
 } callbacks;
 
@@ -40,19 +40,19 @@ static bool goes_on(void *context, uint64_t visited, uint64_t waiting)
     return on > 0;
 }
 
-static int counts(void *context, const numbers *path, int32_t loop, const int64_t *head,
-                  uint32_t dim)
+static int diverges(void *context, const numbers *path, int32_t loop, const int64_t *head,
+                    uint32_t dim)
 {
     callbacks *c = context;
     const Py_ssize_t size = (Py_ssize_t)(dim * dim * sizeof *head);
-    long counted;
+    long found;
     PyEval_RestoreThread(c->thread);
-    counted = ask(c->counts,
-                  Py_BuildValue("(y#iy#)", (const char *)path->at,
-                                (Py_ssize_t)(path->count * sizeof *path->at), (int)loop,
-                                (const char *)head, size));
+    found = ask(c->diverges,
+                Py_BuildValue("(y#iy#)", (const char *)path->at,
+                              (Py_ssize_t)(path->count * sizeof *path->at), (int)loop,
+                              (const char *)head, size));
     c->thread = PyEval_SaveThread();
-    return (counted < 0) ? -1 : (counted > 0);
+    return (found < 0) ? -1 : (found > 0);
 }
 
 static PyObject *answered(const answer *found)
@@ -97,7 +97,7 @@ static bool taken(const Py_buffer *plan, const Py_buffer *costs, int32_t **numbe
     return state == PLAN_GOOD;
 }
 
-/* search(plan, costs, goes_on, counts, most_states, most_bytes, proper_only), as described in zones.h.
+/* search(plan, costs, goes_on, diverges, most_states, most_bytes, proper_only), as described in zones.h.
  * Returns state, ending, loop, improper, visited, stored, discrete states, peak of bytes in use, and as
  * bytes path, parts and spans. */
 static PyObject *zones_search(PyObject *module, PyObject *args)
@@ -113,7 +113,7 @@ static PyObject *zones_search(PyObject *module, PyObject *args)
     double *costs_of = NULL;
     PyObject *made = NULL;
     (void)module;
-    if (!PyArg_ParseTuple(args, "y*y*OOLLi", &plan, &costs, &c.goes_on, &c.counts, &most_states,
+    if (!PyArg_ParseTuple(args, "y*y*OOLLi", &plan, &costs, &c.goes_on, &c.diverges, &most_states,
                           &most_bytes, &proper_only)) {
         return NULL;
     }
@@ -121,7 +121,7 @@ static PyObject *zones_search(PyObject *module, PyObject *args)
         answer found;
         from.context = &c;
         from.goes_on = goes_on;
-        from.counts = counts;
+        from.diverges = diverges;
         from.most_states = (most_states < 0) ? UINT64_MAX : (uint64_t)most_states;
         from.most_bytes = (most_bytes < 0) ? UINT64_MAX : (uint64_t)most_bytes;
         from.proper_only = proper_only != 0;

@@ -122,7 +122,7 @@ static int receivers(engine *h, walk *w, int32_t sender)
 }
 
 /* The number of choices of a group: each of its edges, and none if clocks can disable all of them. */
-static int ways(const engine *h, const walk *w, int g)
+static int choices(const engine *h, const walk *w, int g)
 {
     int k;
     for (k = w->first[g]; k < w->first[g + 1]; k++) {
@@ -161,7 +161,7 @@ static bool broadcast(engine *h, walk *w, int32_t sender, bool committed, sink t
             return false;
         }
         g = groups - 1;
-        while ((g >= 0) && (++w->pick[g] == ways(h, w, g))) {
+        while ((g >= 0) && (++w->pick[g] == choices(h, w, g))) {
             w->pick[g--] = 0;
         }
     }
@@ -201,7 +201,7 @@ static bool pairs(engine *h, walk *w, int32_t sender, bool committed, sink take)
 
 /* Call `take` with all moves from the source of a walk, broadcasts last, until it returns false. Watching
  * edges are no moves of their own. */
-static bool each_way(engine *h, walk *w, sink take)
+static bool each_choice(engine *h, walk *w, sink take)
 {
     bool committed = false;
     int pass;
@@ -255,12 +255,12 @@ static bool each_move(engine *h, walk *w, sink take)
         for (i = 0; i < bounds; i++) {
             w->limits[h->tightest[i]] = h->tightest_bound[i];
         }
-        if ((bounds < 0) || !each_way(h, w, note_blocker)) {
+        if ((bounds < 0) || !each_choice(h, w, note_blocker)) {
             return false;
         }
         w->blocker_count = w->blockers.count;
     }
-    return each_way(h, w, take);
+    return each_choice(h, w, take);
 }
 
 #endif

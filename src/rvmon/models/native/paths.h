@@ -17,14 +17,14 @@ static bool each_stand(engine *h, const bound *z, int k, bool delays, int level,
     if (!on || !delays || (piece_at(h, k)[ROW_ATOMS] == 0)) {
         return on;
     }
-    h->been[k] = 1;
+    h->marked[k] = 1;
     for (m = 0; on && (m < 2 * h->inside_count); m++) {
         bound *to = h->between + (size_t)level * (size_t)h->entries;
         count_work(h);
         if (!runs(h)) {
             break;
         }
-        if (h->been[m / 2] || !has_piece(h, m / 2, &w->here)
+        if (h->marked[m / 2] || !has_piece(h, m / 2, &w->here)
             || !cross(h, to, z, k, m / 2, m % 2 == 1, &w->here)) {
             continue;
         }
@@ -37,7 +37,7 @@ static bool each_stand(engine *h, const bound *z, int k, bool delays, int level,
             }
         }
     }
-    h->been[k] = 0;
+    h->marked[k] = 0;
     return on && runs(h) && !h->failed;
 }
 
@@ -49,7 +49,7 @@ static bool match_here(engine *h, const bound *z, int k, bool delays)
     return each_move(h, &h->out, match);
 }
 
-static void tell(engine *h, int32_t kind, int32_t piece, int32_t number, int32_t edges)
+static void append_step(engine *h, int32_t kind, int32_t piece, int32_t number, int32_t edges)
 {
     int32_t i;
     (void)(put(h, &h->path, kind) && put(h, &h->path, piece) && put(h, &h->path, number)
@@ -62,18 +62,18 @@ static void tell(engine *h, int32_t kind, int32_t piece, int32_t number, int32_t
     }
 }
 
-static int tell_crossings(engine *h, const numbers *crossings)
+static int append_crossings(engine *h, const numbers *crossings)
 {
     uint32_t i;
     for (i = 0; i + 1 < crossings->count; i += 2) {
-        tell(h, STEP_CROSSING, crossings->at[i], crossings->at[i + 1], 0);
+        append_step(h, STEP_CROSSING, crossings->at[i], crossings->at[i + 1], 0);
     }
     return (int)(crossings->count / 2);
 }
 
 /* Append the steps from one node to another by a link; returns their number. The state of the search must
  * be running for that. */
-static int tell_link(engine *h, uint32_t from, uint32_t to, uint32_t link)
+static int append_link(engine *h, uint32_t from, uint32_t to, uint32_t link)
 {
     walk *w = &h->out;
     const int before = piece_of(h, from);
@@ -81,7 +81,7 @@ static int tell_link(engine *h, uint32_t from, uint32_t to, uint32_t link)
     const int32_t number = (int32_t)(link & ~LINK_KIND);
     int steps = 1;
     if ((link & LINK_KIND) != 0) {
-        tell(h, ((link & LINK_KIND) == LINK_MARK) ? STEP_MARK : STEP_CROSSING, piece, number, 0);
+        append_step(h, ((link & LINK_KIND) == LINK_MARK) ? STEP_MARK : STEP_CROSSING, piece, number, 0);
         return steps;
     }
     unpack(h, h->nodes[from].state, &w->here);
@@ -93,16 +93,16 @@ static int tell_link(engine *h, uint32_t from, uint32_t to, uint32_t link)
     if ((before >= 0) && ((h->kind == SEEK_STAY) || (h->kind == SEEK_STAY_AFTER))) {
         (void)each_stand(h, zone_of(h, from), before, h->delays[h->nodes[from].state] != 0, 0,
                          match_here);
-        steps += tell_crossings(h, &h->crossings);
+        steps += append_crossings(h, &h->crossings);
     } else {
         (void)each_move(h, w, match);
     }
-    tell(h, STEP_MOVE, piece, (int32_t)(h->step_bounds.count / 4), h->step_edge_count);
+    append_step(h, STEP_MOVE, piece, (int32_t)(h->step_bounds.count / 4), h->step_edge_count);
     return steps;
 }
 
 /* Append the steps from the start to a node along its parents; returns their number. */
-static int tell_path(engine *h, uint32_t n)
+static int append_path(engine *h, uint32_t n)
 {
     numbers way = {NULL, 0, 0};
     int steps = 0;
@@ -113,7 +113,7 @@ static int tell_path(engine *h, uint32_t n)
     (void)put(h, &h->path, (way.count > 0) ? piece_of(h, (uint32_t)way.at[way.count - 1]) : -1);
     for (k = way.count; (k > 1) && runs(h); k--) {
         const uint32_t to = (uint32_t)way.at[k - 2];
-        steps += tell_link(h, (uint32_t)way.at[k - 1], to, h->nodes[to].link);
+        steps += append_link(h, (uint32_t)way.at[k - 1], to, h->nodes[to].link);
     }
     give_back(h, way.at, way.room, sizeof *way.at);
     return steps;

@@ -7,7 +7,7 @@
 const uint8_t plan_widths[SECTIONS] = {
     4, 3, LOC_SIZE, EDGE_SIZE, ATOM_SIZE, LIMIT_SIZE, 1, 1, ROW_SIZE, ROW_SIZE,
     LIMIT_SIZE, TREE_SIZE, ROW_SIZE,
-    WAY_SIZE, 1, 1,
+    BUCHI_SIZE, 1, 1,
 };
 
 static bool sections_fit(const int32_t *plan, size_t count)
@@ -166,21 +166,21 @@ static bool tree_fits(const checker *c)
 }
 
 /* The automaton has the pieces inside as states. */
-static bool ways_fit(const checker *c)
+static bool buchi_fits(const checker *c)
 {
-    const int32_t *row = plan_rows(c->plan, AT_WAYS);
+    const int32_t *row = plan_rows(c->plan, AT_BUCHI);
     const int32_t pieces = rows(c, AT_INSIDE);
     int32_t i;
     if (c->plan[HEAD_KIND] != SEEK_RUN) {
         return true;
     }
-    if ((rows(c, AT_WAYS) != pieces) || (c->plan[HEAD_SETS] < 0)
+    if ((rows(c, AT_BUCHI) != pieces) || (c->plan[HEAD_SETS] < 0)
         || (c->plan[HEAD_SETS] > MOST_SETS)) {
         return false;
     }
-    for (i = 0; i < pieces; i++, row += WAY_SIZE) {
-        if ((row[WAY_SETS] < 0) || ((row[WAY_SETS] >> c->plan[HEAD_SETS]) != 0)
-            || !within(row[WAY_ARC], row[WAY_ARCS], rows(c, AT_ARCS))) {
+    for (i = 0; i < pieces; i++, row += BUCHI_SIZE) {
+        if ((row[BUCHI_SETS] < 0) || ((row[BUCHI_SETS] >> c->plan[HEAD_SETS]) != 0)
+            || !within(row[BUCHI_ARC], row[BUCHI_ARCS], rows(c, AT_ARCS))) {
             return false;
         }
     }
@@ -225,7 +225,7 @@ static bool parts_fit(checker *c)
     return programs_fit(c) && limits_fit(c, AT_LIMITS) && limits_fit(c, AT_EXTRA) && atoms_fit(c)
            && alternatives_fit(c, AT_GOAL) && alternatives_fit(c, AT_INSIDE)
            && alternatives_fit(c, AT_PIECES) && places_fit(c) && tree_fits(c)
-           && ways_fit(c) && ranks_fit(c);
+           && buchi_fits(c) && ranks_fit(c);
 }
 
 plan_state plan_check(const int32_t *plan, size_t count)

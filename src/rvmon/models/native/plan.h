@@ -49,7 +49,7 @@ enum {
     AT_EXTRA,     /* limits that apply in every location */
     AT_TREE,      /* nested formula, as below; the last row is the whole */
     AT_PIECES,    /* alternatives of plain rows of the tree */
-    AT_WAYS,      /* for each alternative inside, the state of the automaton, as below */
+    AT_BUCHI,      /* for each alternative inside, the state of the automaton, as below */
     AT_ARCS,      /* targets of the arcs of these states */
     AT_RANKS,     /* priorities, if any: of automata, of steps without channel, of channels */
     SECTIONS
@@ -70,7 +70,7 @@ enum { ROW_CONDITION, ROW_ATOM, ROW_ATOMS, ROW_SIZE };
 enum { ATOM_CLOCK, ATOM_OP, ATOM_CODE, ATOM_NUMBER, ATOM_SIZE };
 enum { LIMIT_CLOCK, LIMIT_LOWER, LIMIT_NUMBER, LIMIT_SIZE };
 /* Whether runs start in the state, its acceptance sets as bits, its arcs. */
-enum { WAY_STARTS, WAY_SETS, WAY_ARC, WAY_ARCS, WAY_SIZE };
+enum { BUCHI_STARTS, BUCHI_SETS, BUCHI_ARC, BUCHI_ARCS, BUCHI_SIZE };
 enum { TREE_KIND, TREE_LEFT, TREE_RIGHT, TREE_BOUND, TREE_SIZE };
 /* Alternatives; both rows; one of both rows; not the left row; some run has left until right (left -1:
  * anything); some run stays in left; some next move leads to left (-1: anywhere). The bound is -1 if

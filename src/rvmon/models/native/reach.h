@@ -129,7 +129,7 @@ static bool note_alive(engine *h, walk *w, const int32_t *edges, int n)
     if (!invariant_data_holds(h, &w->there)) {
         return !h->failed;
     }
-    bounds = invariant_behind(h, w);
+    bounds = invariant_after(h, w);
     fit = bounds >= 0;
     for (i = 0; fit && (i < bounds); i++) {
         fit = constrain(z, h->dim, 0, h->tightest[i], h->tightest_bound[i]);

@@ -9,9 +9,9 @@
 #define TICKS ((uint32_t)1 << 30)
 #define CLOSED UINT32_MAX /* the rank of nodes in components that were left */
 
-static const int32_t *way_of(const engine *h, int k)
+static const int32_t *buchi_of(const engine *h, int k)
 {
-    return plan_rows(h->plan, AT_WAYS) + (ptrdiff_t)WAY_SIZE * k;
+    return plan_rows(h->plan, AT_BUCHI) + (ptrdiff_t)BUCHI_SIZE * k;
 }
 
 static int32_t arc_at(const engine *h, int32_t a)
@@ -45,10 +45,10 @@ static void find_rest(engine *h)
                 changed = false;
                 count_work(h);
                 for (k = 0; k < n; k++) {
-                    const int32_t *way = way_of(h, k);
+                    const int32_t *buchi = buchi_of(h, k);
                     int32_t a;
-                    for (a = 0; (h->allowed[k] != 0) && (a < way[WAY_ARCS]); a++) {
-                        const int32_t m = arc_at(h, way[WAY_ARC] + a);
+                    for (a = 0; (h->allowed[k] != 0) && (a < buchi[BUCHI_ARCS]); a++) {
+                        const int32_t m = arc_at(h, buchi[BUCHI_ARC] + a);
                         const int32_t from = side ? m : k;
                         const int32_t to = side ? k : m;
                         if ((h->allowed[m] != 0) && (found[to] == 0)
@@ -62,7 +62,7 @@ static void find_rest(engine *h)
         }
         for (k = 0; k < n; k++) {
             if ((h->rest_on[k] != 0) && (h->rest_back[k] != 0)) {
-                met |= (uint32_t)way_of(h, k)[WAY_SETS];
+                met |= (uint32_t)buchi_of(h, k)[BUCHI_SETS];
             }
         }
         if ((h->rest_on[r] != 0) && ((met & sets) == sets)) {
@@ -136,17 +136,17 @@ static bool look_for_stuck(engine *h, const bound *z, int k, bool delays)
             }
         }
     }
-    (void)memcpy(h->been, h->allowed, (size_t)h->inside_count);
+    (void)memcpy(h->marked, h->allowed, (size_t)h->inside_count);
     for (i = 0; (i < h->dead.count) && !found && runs(h) && !h->failed; i++) {
         for (m = 0; m < h->inside_count; m++) {
-            h->allowed[m] = (h->been[m] != 0) && holds_last(h, nth(h, &h->dead, i), m, delays);
+            h->allowed[m] = (h->marked[m] != 0) && holds_last(h, nth(h, &h->dead, i), m, delays);
         }
         if (rests(h, k)) {
             h->parts.count = 0;
             found = push_zone(h, &h->parts, nth(h, &h->dead, i));
         }
     }
-    (void)memset(h->been, 0, (size_t)h->inside_count);
+    (void)memset(h->marked, 0, (size_t)h->inside_count);
     empty(h, &parts);
     return found;
 }

@@ -28,7 +28,7 @@ static void note_span(engine *h, const bound *z, const spot *here)
     span[1] = (high > span[1]) ? high : span[1];
 }
 
-static void enter_way(engine *h, const bound *z, const spot *here);
+static void enter_run(engine *h, const bound *z, const spot *here);
 
 /* Store a zone reached in a discrete state whose data satisfy the invariant, as the kind of search needs. */
 static void arrive(engine *h, bound *z, const spot *here,
@@ -40,7 +40,7 @@ static void arrive(engine *h, bound *z, const spot *here,
     bool fresh;
     bool delays;
     if (h->kind == SEEK_RUN) {
-        enter_way(h, z, here);
+        enter_run(h, z, here);
         return;
     }
     if (h->phase != 0) {

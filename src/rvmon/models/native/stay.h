@@ -89,7 +89,7 @@ static bool moves_here(engine *h, const bound *z, int k, bool delays)
 }
 
 /* Append the steps to the last frame, and set the index of the loop if it goes back to a node. */
-static void tell_way(engine *h, uint32_t back)
+static void append_frames(engine *h, uint32_t back)
 {
     const uint32_t first = h->frames[0].node;
     const uint32_t parent = h->stem;
@@ -100,13 +100,13 @@ static void tell_way(engine *h, uint32_t back)
     if (parent == NONE) {
         (void)put(h, &h->path, piece_of(h, first));
     } else {
-        steps = tell_path(h, parent) + tell_link(h, parent, first, h->frames[0].link);
+        steps = append_path(h, parent) + append_link(h, parent, first, h->frames[0].link);
     }
     for (i = 1; i < h->frame_count; i++) {
         if (h->frames[i - 1].node == back) {
             h->loop = steps;
         }
-        steps += tell_link(h, h->frames[i - 1].node, h->frames[i].node, h->frames[i].link);
+        steps += append_link(h, h->frames[i - 1].node, h->frames[i].node, h->frames[i].link);
     }
     if (h->frames[i - 1].node == back) {
         h->loop = steps;
@@ -115,11 +115,11 @@ static void tell_way(engine *h, uint32_t back)
 
 /* Ask the caller whether time diverges on the current loop, which starts at a node: 1 or 0; -1 if the
  * search ended. */
-static int ask_counts(engine *h, uint32_t n)
+static int ask_diverges(engine *h, uint32_t n)
 {
     int64_t *head;
     uint32_t room = 0;
-    int counts;
+    int diverges;
     int e;
     head = enlarge(h, NULL, &room, (uint64_t)h->entries, sizeof *head);
     if (!runs(h)) {
@@ -128,30 +128,30 @@ static int ask_counts(engine *h, uint32_t n)
     for (e = 0; e < h->entries; e++) {
         head[e] = number_of_bound(zone_of(h, n)[e]);
     }
-    counts = h->from->counts(h->from->context, &h->path, h->loop, head, (uint32_t)h->dim);
+    diverges = h->from->diverges(h->from->context, &h->path, h->loop, head, (uint32_t)h->dim);
     give_back(h, head, room, sizeof *head);
     h->step_edge_count = 0;
-    if (counts < 0) {
+    if (diverges < 0) {
         h->state = SEARCH_STOPPED;
     }
-    return counts;
+    return diverges;
 }
 
 /* Handle a loop back to a node on the stack; found, if time diverges on it or need not. */
 static void close_loop(engine *h, successor to)
 {
-    int counts;
-    tell_way(h, to.node);
-    (void)tell_link(h, h->frames[h->frame_count - 1].node, to.node, to.link);
-    counts = ask_counts(h, to.node);
+    int diverges;
+    append_frames(h, to.node);
+    (void)append_link(h, h->frames[h->frame_count - 1].node, to.node, to.link);
+    diverges = ask_diverges(h, to.node);
     if (!runs(h)) {
         return;
     }
-    if ((counts == 0) && h->from->proper_only) {
+    if ((diverges == 0) && h->from->proper_only) {
         h->improper = true;
         h->loop = -1;
     } else {
-        h->ending = (counts != 0) ? END_LOOP : END_ZENO;
+        h->ending = (diverges != 0) ? END_LOOP : END_ZENO;
         h->parts.count = 0;
         h->state = SEARCH_FOUND;
     }
@@ -184,8 +184,8 @@ static void stay_at(engine *h, successor at)
         h->ending = END_REACHED;
     }
     if (h->ending != END_REACHED) {
-        tell_way(h, NONE);
-        (void)tell_crossings(h, &h->last_crossings);
+        append_frames(h, NONE);
+        (void)append_crossings(h, &h->last_crossings);
         h->state = runs(h) ? SEARCH_FOUND : h->state;
         return;
     }

@@ -144,7 +144,7 @@ static int32_t rank_of(engine *h, const walk *w, const int32_t *edges, int n)
 
 /* The weakest precondition of a move for the invariant of its target, as upper bounds in `tightest`;
  * returns their number, or -1 if it cannot hold or failed. */
-static int invariant_behind(engine *h, const walk *w)
+static int invariant_after(engine *h, const walk *w)
 {
     const int bounds = invariant_of(h, &w->there);
     int n = 0;
@@ -165,7 +165,7 @@ static int invariant_behind(engine *h, const walk *w)
  * hold, or failed. */
 static bool deny_invariant(engine *h, walk *w)
 {
-    const int bounds = invariant_behind(h, w);
+    const int bounds = invariant_after(h, w);
     int c;
     int i;
     for (c = 1; c < h->dim; c++) {
@@ -199,9 +199,9 @@ static bool note_blocker(engine *h, walk *w, const int32_t *edges, int n)
         }
     }
     if (!apply(h, w, edges, n)) {
-        const bool is_numbers = h->failed; /* reported where the move itself is taken */
+        const bool update_failed = h->failed; /* reported where the move itself is taken */
         h->failed = false;
-        return is_numbers;
+        return update_failed;
     }
     if (!invariant_data_holds(h, &w->there) || !deny_invariant(h, w)) {
         drop_denial(&w->blockers);

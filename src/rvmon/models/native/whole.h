@@ -122,7 +122,7 @@ static bool make_engine(engine *h, const int32_t *plan, const double *costs, con
     h->inside = block(h, d * d, sizeof *h->inside);
     h->copy = block(h, d * d, sizeof *h->copy);
     h->between = block(h, d * d * (size_t)h->inside_count + d * d, sizeof *h->between);
-    h->been = block(h, (size_t)h->inside_count, sizeof *h->been);
+    h->marked = block(h, (size_t)h->inside_count, sizeof *h->marked);
     h->allowed = block(h, (size_t)h->inside_count, 1);
     h->rest_allowed = block(h, (size_t)h->inside_count, 1);
     h->rest_good = block(h, (size_t)h->inside_count, 1);
@@ -242,7 +242,7 @@ static void run(engine *h)
 }
 
 /* Append the path to the result, or to the failure including the move that failed. */
-static void tell_end(engine *h)
+static void append_end(engine *h)
 {
     /* Once memory has run out, a failure may be a consequence of that. */
     const bool fails = h->failed && (runs(h) || (h->state == SEARCH_FOUND));
@@ -265,18 +265,18 @@ static void tell_end(engine *h)
     h->failed = false;
     if (ended == SEARCH_FOUND) {
         if (!on_the_way) {
-            (void)tell_path(h, h->found);
+            (void)append_path(h, h->found);
         }
     } else {
         if (on_the_way && (h->frame_count > 0)) {
-            tell_way(h, NONE);
+            append_frames(h, NONE);
         } else {
-            (void)tell_path(h, h->from_node);
+            (void)append_path(h, h->from_node);
         }
         (void)memcpy(h->step_edges, h->failed_edges, (size_t)failed * sizeof *h->step_edges);
         h->step_edge_count = failed;
         if (failed > 0) {
-            tell(h, STEP_MOVE, -1, 0, failed);
+            append_step(h, STEP_MOVE, -1, 0, failed);
         }
     }
     if (runs(h)) {
@@ -294,7 +294,7 @@ static answer search_here(const int32_t *plan, const double *costs, const caller
     (void)memset(&found, 0, sizeof found);
     if (make_engine(h, plan, costs, from)) {
         run(h);
-        tell_end(h);
+        append_end(h);
     }
     if ((h->state == SEARCH_FOUND) && (h->parts.count > 0)) {
         uint32_t room = 0;

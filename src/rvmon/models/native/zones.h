@@ -50,12 +50,12 @@ typedef struct {
 } answer;
 
 /* The caller of a search. `goes_on` is called from time to time, and stops the search by returning false.
- * `counts` is called with a loop: it returns 1 if time diverges on the loop, 0 if not, -1 to stop. */
+ * `diverges` is called with a loop: it returns 1 if time diverges on the loop, 0 if not, -1 to stop. */
 typedef struct {
     void *context;
     bool (*goes_on)(void *context, uint64_t visited, uint64_t waiting);
-    int (*counts)(void *context, const numbers *path, int32_t loop, const int64_t *head,
-                  uint32_t dim);
+    int (*diverges)(void *context, const numbers *path, int32_t loop, const int64_t *head,
+                    uint32_t dim);
     uint64_t most_states;
     uint64_t most_bytes; /* of memory in use */
     bool proper_only;    /* only runs on which time diverges */

@@ -101,7 +101,7 @@ def compares_of(expression: ex.Expression) -> Iterator[ex.ClockCompare]:
     return (part for part in parts_of(expression) if isinstance(part, ex.ClockCompare))
 
 
-def speaks_of_deadlock(formula: ex.Expression) -> bool:
+def has_deadlock(formula: ex.Expression) -> bool:
     """Whether `deadlock` occurs in a formula."""
     return any(isinstance(part, ex.Deadlock) for part in parts_of(formula))
 
@@ -226,7 +226,7 @@ MOST_PARTS = 100_000  # limit for the parts of a condition in normal form
 MOST_PIECES = 4000  # limit for the alternatives into which a formula is split
 
 
-def together(parts: Iterable[ex.Expression]) -> ex.Expression:
+def conjunction(parts: Iterable[ex.Expression]) -> ex.Expression:
     """The conjunction of some formulas, without those that are always true."""
     formula: ex.Expression = ex.TRUE
     for part in parts:
@@ -239,12 +239,14 @@ def together(parts: Iterable[ex.Expression]) -> ex.Expression:
     return formula
 
 
-def either(parts: Sequence[ex.Expression]) -> ex.Expression:
+def disjunction(parts: Sequence[ex.Expression]) -> ex.Expression:
     """The disjunction of some formulas, as a balanced tree so that recursion stays shallow."""
     if len(parts) < 2:
         return parts[0] if parts else ex.FALSE
     middle = len(parts) // 2
-    return ex.BinaryOperation(ex.BinaryOp.OR, either(parts[:middle]), either(parts[middle:]))
+    return ex.BinaryOperation(
+        ex.BinaryOp.OR, disjunction(parts[:middle]), disjunction(parts[middle:])
+    )
 
 
 def alternatives_of(
@@ -277,7 +279,7 @@ def distributed(
 
 
 def _guard(parts: Sequence[ex.Expression]) -> Guard:
-    data = together(part for part in parts if not isinstance(part, ex.ClockCompare))
+    data = conjunction(part for part in parts if not isinstance(part, ex.ClockCompare))
     return Guard(data, tuple(part for part in parts if isinstance(part, ex.ClockCompare)))
 
 

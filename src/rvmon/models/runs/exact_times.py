@@ -91,7 +91,7 @@ class Rules:
         Raises:
             InvalidRunError: they cannot be taken together here.
         """
-        after = self._behind(now, action)
+        after = self._taken(now, action)
         if self._network.priorities is not None:
             own = self._rank(now, action)
             for other in self.every_action(now):
@@ -179,7 +179,7 @@ class Rules:
     def _is_possible(self, now: Configuration, action: Action) -> bool:
         """Whether edges can be taken together, ignoring priorities."""
         try:
-            self._behind(now, action)
+            self._taken(now, action)
         except _FailedUpdateError:
             return True
         except InvalidRunError:
@@ -192,7 +192,7 @@ class Rules:
         assert self._network.priorities is not None, "asked only with priorities"
         return self._network.priorities.rank(channel, (automaton for automaton, _ in action.edges))
 
-    def _behind(self, now: Configuration, action: Action) -> Configuration:
+    def _taken(self, now: Configuration, action: Action) -> Configuration:
         """The configuration after edges are taken together, ignoring priorities."""
         movers = [automaton for automaton, _ in action.edges]
         for automaton, edge in action.edges:

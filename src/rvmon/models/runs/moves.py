@@ -147,11 +147,11 @@ class Space:
                     edge.updates(locations, frame)
         except ModelError as error:
             return Move(edges, guard, left_out, (), state, rank, error)
-        behind = self.state(tuple(changed), frame.variables())
-        if behind is None:
+        target = self.state(tuple(changed), frame.variables())
+        if target is None:
             return None
         resets = tuple((c + 1, value * self._grid) for c, value in frame.clocks.items())
-        return Move(edges, guard, left_out, resets, behind, rank)
+        return Move(edges, guard, left_out, resets, target, rank)
 
     def _rank(self, state: State, edges: tuple[ReadyEdge, ...]) -> int:
         priorities, channel = self.network.priorities, edges[0].channel

@@ -112,12 +112,12 @@ def _draw(
 ) -> tuple[Move, int] | None:
     """Draw a move and its delay in grid steps; `None` if no move is possible any more."""
     longest = _longest(state, clocks, rates)
-    begun: dict[int, list[_Choice]] = {}
+    by_automaton: dict[int, list[_Choice]] = {}
     for choice in _possible(space, state, clocks, rates, longest):
-        begun.setdefault(choice.move.edges[0].automaton, []).append(choice)
+        by_automaton.setdefault(choice.move.edges[0].automaton, []).append(choice)
     draws: list[tuple[int, float, Move]] = []
-    while begun and not draws:
-        for automaton, possible in begun.items():
+    while by_automaton and not draws:
+        for automaton, possible in by_automaton.items():
             weights = [prod(edge.edge.weight for edge in choice.move.edges) for choice in possible]
             if random.random() < sum(weights):
                 (one,) = random.choices(possible, weights)

@@ -24,7 +24,7 @@ from rvmon.models.network import Chance, Mean, Network, Query, Simulation
 from rvmon.models.network.evaluate import evaluator
 from rvmon.models.network.expressions import BinaryOp, PathOp
 from rvmon.models.network.fractions import GRID, number_in
-from rvmon.models.network.guards import has_paths, normal_form, speaks_of_deadlock
+from rvmon.models.network.guards import has_deadlock, has_paths, normal_form
 from rvmon.models.runs.moves import Space, State, check_start
 from rvmon.models.runs.simulate import CutShortError, stretches, trial_of
 
@@ -171,7 +171,7 @@ class _Runs:
 
 
 def _chance(network: Network, query: Query, chance: Chance, random: Random, runs: _Runs) -> Sampled:
-    if speaks_of_deadlock(chance.body):
+    if has_deadlock(chance.body):
         reason = "a deadlock is a lack of moves, and random runs are checked by their states alone"
         fix = "ask whether one is reachable: E<> deadlock"
         raise model_error("TA020", reason, query.span, fix)

@@ -78,8 +78,8 @@ def location_bounds(
         # order converges sooner.
         for edge, gone in zip(reversed(automaton.edges), reversed(resets), strict=True):
             source, target = bounds[edge.source], bounds[edge.target]
-            for here, behind in ((source.lower, target.lower), (source.upper, target.upper)):
-                for clock, number in list(behind.items()):
+            for here, there in ((source.lower, target.lower), (source.upper, target.upper)):
+                for clock, number in list(there.items()):
                     if clock not in gone and number > here.get(clock, -1):
                         here[clock] = number
                         changed = True

@@ -94,7 +94,7 @@ class _Climb:
         if run is None:
             stopped = self._meter.stopped
             remark = f"not decided: {stopped}" if stopped else "no state meets the condition"
-            return self._told(None, run, attained=False, exact=not stopped, remark=remark)
+            return self._extreme(None, run, attained=False, exact=not stopped, remark=remark)
         # Invariant: some run reaches `low`, and nothing beyond `high` is searched for. `proved`
         # tells whether `high` bounds all values.
         low, high = floor(self._value(run)), self._farthest()
@@ -104,7 +104,7 @@ class _Climb:
             probe = min(low + stride, high) - 1
             if self._grows(run):
                 remark = "grows without bound: time may pass forever there"
-                return self._told(None, run, attained=False, exact=True, remark=remark)
+                return self._extreme(None, run, attained=False, exact=True, remark=remark)
             further = self._reach(self._beyond(probe))
             if further is None:
                 high, proved = probe, True
@@ -114,11 +114,11 @@ class _Climb:
                 stride *= 2
         if self._meter.stopped or not proved:
             remark = f"not decided: {self._meter.stopped}" if self._meter.stopped else ""
-            return self._told(low, run, attained=True, exact=False, remark=remark)
+            return self._extreme(low, run, attained=True, exact=False, remark=remark)
         there = run if self._value(run) == low else self._reach(self._beyond(low, or_at=True))
-        return self._told(low, there or run, attained=there is not None, exact=True)
+        return self._extreme(low, there or run, attained=there is not None, exact=True)
 
-    def _told(
+    def _extreme(
         self, value: int | None, run: Run | None, *, attained: bool, exact: bool, remark: str = ""
     ) -> Extreme:
         signed = None if value is None else self._sign * value

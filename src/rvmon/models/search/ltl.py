@@ -23,7 +23,7 @@ MOST_SETS = 28
 
 
 @dataclass(frozen=True, slots=True)
-class WayState:
+class BuchiState:
     """A state of the automaton."""
 
     # conditions and clock bounds that all hold while the state lasts
@@ -34,10 +34,10 @@ class WayState:
 
 
 @dataclass(frozen=True, slots=True)
-class Ways:
+class BuchiAutomaton:
     """A generalised Büchi automaton: it accepts a run that visits each set infinitely often."""
 
-    states: tuple[WayState, ...]
+    states: tuple[BuchiState, ...]
     sets: int
 
 
@@ -59,7 +59,7 @@ def check_linear(formula: ex.Expression, span: Span | None) -> None:
                 raise model_error("TA020", "one run does not show `deadlock`", span, fix)
 
 
-def ways_of(formula: ex.Expression, span: Span | None) -> Ways:
+def buchi_of(formula: ex.Expression, span: Span | None) -> BuchiAutomaton:
     """The automaton of a normalised formula; `span` is the place of its query."""
     tableau = _Tableau()
     first = tableau.cover(frozenset({formula}))
@@ -79,10 +79,10 @@ def ways_of(formula: ex.Expression, span: Span | None) -> Ways:
     if len(promises) > MOST_SETS:
         raise model_error("TA019", "the formula has too many operators", span)
     states = tuple(
-        WayState(tuple(key.label), place < len(first), key.sets(promises), arcs[place])
+        BuchiState(tuple(key.label), place < len(first), key.sets(promises), arcs[place])
         for place, key in enumerate(pending)
     )
-    return Ways(states, len(promises))
+    return BuchiAutomaton(states, len(promises))
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rvmon.models import model_error
 from rvmon.models.network import Guard, Network
-from rvmon.models.network.guards import together
+from rvmon.models.network.guards import conjunction
 from rvmon.models.runs import STRICT, Atom, Ending, Run, Zone
 from rvmon.models.runs import timing as timings
 from rvmon.models.runs.moves import Space, State, atoms_of, pieces_of
@@ -80,14 +80,14 @@ def seek(network: Network, sought: Sought, meter: Meter, *, proper_only: bool = 
     plan = Plan(network, sought)
     paths = _Paths(network, plan, sought)
 
-    def counts(path: bytes, loop: int, head: bytes) -> int:
+    def diverges(path: bytes, loop: int, head: bytes) -> int:
         # C calls this for each loop that it cannot judge itself. That is rare, and needs relations
         # between rounds, which are here.
         steps = paths.walk(path)[1][loop:]
         return time_passes(steps, _zone(array("q", head)), paths.dim)
 
     state, ending, loop, improper, visited, stored, _, _, path, parts, spans = search(
-        plan.numbers, plan.costs, meter.look, counts, meter.left, -1, proper_only
+        plan.numbers, plan.costs, meter.look, diverges, meter.left, -1, proper_only
     )
     meter.add(visited, stored)
     match _State(state):
@@ -190,8 +190,8 @@ class _Paths:
         raise AssertionError("the native search failed where the rules do not")
 
     def _ask(self, state: State, sought: Sought) -> None:
-        labels = [] if sought.ways is None else [s.label for s in sought.ways.states]
-        for formula in (sought.goal, sought.inside, *map(together, labels)):
+        labels = [] if sought.automaton is None else [s.label for s in sought.automaton.states]
+        for formula in (sought.goal, sought.inside, *map(conjunction, labels)):
             if formula is not None:
                 pieces_of(formula)(state.locations, state.values)
 
@@ -214,35 +214,35 @@ class _Paths:
             at, piece, step = self._walked[-1]
             state = step.state
         while at < len(numbers):
-            kind, behind, number, count = numbers[at : at + 4]
+            kind, piece_after, number, count = numbers[at : at + 4]
             at += 4 + count
             here = self._constraint(self._plan.inside, piece, state)
             match _Step(kind):
                 case _Step.MOVE:
                     edges = [self._plan.edges[edge] for edge in numbers[at - count : at]]
                     bounds, at = numbers[at : at + 4 * number], at + 4 * number
-                    step = self._move(state, edges, (*_bounds(bounds), *here), behind)
+                    step = self._move(state, edges, (*_bounds(bounds), *here), piece_after)
                 case _Step.CROSSING:
-                    there = self._constraint(self._plan.inside, behind, state)
+                    there = self._constraint(self._plan.inside, piece_after, state)
                     leave = here if number else _rounded(here, uppers=True)
                     enter = _rounded(there, uppers=False) if number else there
                     step = timings.crossing_step(state, leave, enter)
                 case _Step.MARK:
                     holds = self._constraint(self._plan.goal, number, state)
-                    there = self._constraint(self._plan.inside, behind, state)
+                    there = self._constraint(self._plan.inside, piece_after, state)
                     step = timings.mark_step(state, (*holds, *there), self._timers)
-            state, piece = step.state, behind
+            state, piece = step.state, piece_after
             self._walked.append(_Walked(at, piece, step))
         return state, [walked.step for walked in self._walked]
 
     def _move(
-        self, state: State, edges: Sequence[tuple[int, int]], leave: timings.Piece, behind: int
+        self, state: State, edges: Sequence[tuple[int, int]], leave: timings.Piece, piece_after: int
     ) -> timings.PathStep:
         move = self._space.step(state, edges)
         assert move is not None, "the native search made it"
         if move.failure is not None:
             raise move.failure
-        enter = self._constraint(self._plan.inside, behind, move.target)
+        enter = self._constraint(self._plan.inside, piece_after, move.target)
         return timings.move_step(state, move, leave, enter)
 
     def _constraint(

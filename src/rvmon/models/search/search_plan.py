@@ -17,7 +17,7 @@ from rvmon.models.network import expressions as ex
 from rvmon.models.search.budget import Policy
 from rvmon.models.search.bytecode import Programs
 from rvmon.models.search.clock_bounds import ClockBounds, location_bounds
-from rvmon.models.search.ltl import Ways, WayState
+from rvmon.models.search.ltl import BuchiAutomaton, BuchiState
 
 MAGIC = 0x5A4E3031
 MOST_CLOCKS = 5000
@@ -52,11 +52,11 @@ class Plan:
         # The alternatives of the goal and of the states to stay in.
         self.goal = guards.alternatives_of(sought.goal, due)
         self.inside = guards.alternatives_of(sought.inside, due)
-        states = () if sought.ways is None else sought.ways.states
+        states = () if sought.automaton is None else sought.automaton.states
         self.inside += [
             guard
             for state in states
-            for guard in guards.alternatives_of(guards.together(state.label))
+            for guard in guards.alternatives_of(guards.conjunction(state.label))
         ]
         goal = self._alternatives(self.goal)
         inside = self._alternatives(self.inside)
@@ -72,13 +72,13 @@ class Plan:
             (3, automata), (8, locations), (10, edges), (4, self._atoms), (3, self._limits),
             (1, self._programs.code), (1, self._programs.table), (3, goal), (3, inside),
             (3, self._extra(sought, timer + 1)), (4, self._tree), (3, self._pieces),
-            (4, _way_rows(states)), (1, [arc for state in states for arc in state.arcs]),
+            (4, _buchi_rows(states)), (1, [arc for state in states for arc in state.arcs]),
             (1, [] if ranks is None else [*ranks.automata, ranks.internal, *ranks.channels]),
         ]  # fmt: skip
         late = sought.bound if sought.kind in (Seek.LATE, Seek.LATE_AFTER) else sought.progress
         choose = list(Policy).index(sought.choose)
         head = [MAGIC, sought.kind, choose, timer, sought.has_timer, sought.is_levelled]
-        sets = 0 if sought.ways is None else sought.ways.sets
+        sets = 0 if sought.automaton is None else sought.automaton.sets
         head += [int(late or 0), sets, len(network.locals), network.is_watched]
         # the plan, and the costs of its edges as doubles, both as bytes
         self.numbers = _packed(head, sections)
@@ -169,7 +169,7 @@ class Plan:
             case ex.UnaryOperation(ex.UnaryOp.NOT, ex.Deadlock()):
                 return self._row(_NEXT, -1)
             case ex.BinaryOperation(ex.BinaryOp.AND | ex.BinaryOp.OR as op, left, right) if (
-                guards.has_paths(formula) or guards.speaks_of_deadlock(formula)
+                guards.has_paths(formula) or guards.has_deadlock(formula)
             ):
                 kind = _AND if op is ex.BinaryOp.AND else _OR
                 return self._row(kind, self._grow(left), self._grow(right))
@@ -232,7 +232,7 @@ def _places_of(condition: ex.Expression) -> Iterator[tuple[int, int]]:
             yield from _places_of(right)
 
 
-def _way_rows(states: Iterable[WayState]) -> list[int]:
+def _buchi_rows(states: Iterable[BuchiState]) -> list[int]:
     rows, arcs = list[int](), 0
     for state in states:
         rows += (state.starts, state.sets, arcs, len(state.arcs))
@@ -273,8 +273,8 @@ class Sought:
     goal: ex.Expression | None = None  # states to reach, or after which a run must stay inside
     inside: ex.Expression | None = None  # states in which a run must stay
     nested: ex.Expression | None = None  # states to reach, or start condition, with path operators
-    ways: Ways | None = None  # the automaton of an LTL formula that must accept the run
-    progress: bool = False  # whether time must diverge on a run that `ways` accepts
+    automaton: BuchiAutomaton | None = None  # must accept the run; of an LTL formula
+    progress: bool = False  # whether time must diverge on a run that `automaton` accepts
     choose: Policy = Policy.SHORTEST
     bound: int | None = None  # in units of time
 

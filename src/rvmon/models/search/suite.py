@@ -74,7 +74,7 @@ def build_suite(
     meter, found, covered = Meter(budget, watch), list[tuple[Run, frozenset[Item]]](), set[Item]()
     for item in all_items(network, criterion):
         if item not in covered and not meter.stopped:
-            run = _way_to(network, criterion, item, meter)
+            run = _run_to(network, criterion, item, meter)
             if run is not None:
                 found.append((run, _items_on(network, run, criterion) | {item}))
                 covered |= found[-1][1]
@@ -82,7 +82,7 @@ def build_suite(
     return Suite(criterion, tuple(_chosen(found)), missing, meter.statistics(), meter.stopped)
 
 
-def _way_to(network: Network, criterion: Criterion, item: Item, meter: Meter) -> Run | None:
+def _run_to(network: Network, criterion: Criterion, item: Item, meter: Meter) -> Run | None:
     """A shortest run to an item; `None` if there is none or the search was stopped."""
     if criterion is Criterion.LOCATIONS:
         goal: ex.Expression = ex.InLocation(item.automaton, *item.numbers)

@@ -15,7 +15,7 @@ from rvmon.models.network import guards
 from rvmon.models.runs import Ending, Run
 from rvmon.models.runs.moves import check_start
 from rvmon.models.search.budget import UNLIMITED, Budget, Meter, Outcome, Policy, Watch
-from rvmon.models.search.ltl import check_linear, ways_of
+from rvmon.models.search.ltl import buchi_of, check_linear
 from rvmon.models.search.native_search import seek
 from rvmon.models.search.search_plan import Seek, Sought
 
@@ -208,10 +208,10 @@ def _reach_nested(question: _Question, formula: ex.Expression, shows: bool) -> _
         lasting = _lasting_part(parts)
         first = [part for part in parts if part is not lasting]
         if lasting is None or not all(map(guards.is_plain, first)):
-            run = question.run(Sought(Seek.NESTED, nested=guards.together(parts)))
+            run = question.run(Sought(Seek.NESTED, nested=guards.conjunction(parts)))
         else:
             away = guards.normal_form(lasting.body, positive=False)
-            run = _unanswered(question, guards.together(first), away, lasting.bound)
+            run = _unanswered(question, guards.conjunction(first), away, lasting.bound)
         if run is not None or question.meter.stopped:
             break
     return _Found(shows, run)
@@ -263,7 +263,7 @@ def _on_runs(question: _Question, query: nta.Query, formula: ex.Expression) -> _
 
 def _accepted(question: _Question, formula: ex.Expression, span: Span | None) -> Run | None:
     """Find a run that satisfies a normalised LTL formula, preferably one on which time diverges."""
-    sought = Sought(Seek.RUN, ways=ways_of(formula, span))
+    sought = Sought(Seek.RUN, automaton=buchi_of(formula, span))
     run = question.run(sought)
     # Real systems cannot stop time, so a run on which time diverges is more convincing.
     if run is not None and run.ending in (Ending.ZENO_LOOP, Ending.TIME_LOCK):

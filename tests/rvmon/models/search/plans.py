@@ -19,7 +19,7 @@ from rvmon.models.network.expressions import (
 )
 from rvmon.models.network.guards import normal_form
 from rvmon.models.search.budget import Policy
-from rvmon.models.search.ltl import ways_of
+from rvmon.models.search.ltl import buchi_of
 from rvmon.models.search.search_plan import Plan, Seek, Sought
 
 _LINEAR = "G F (P0.l0 or x > 1)", "(F G P0.l1 and not (b U x < 2))"
@@ -43,7 +43,7 @@ def search_plans(seeds: Iterable[int]) -> Iterator[Plan]:
             Sought(Seek.LATE_AFTER, some, other, bound=2),
             Sought(Seek.NESTED, nested=nested),
             *(
-                Sought(Seek.RUN, ways=ways_of(normal_form(linear), None), progress=progress)
+                Sought(Seek.RUN, automaton=buchi_of(normal_form(linear), None), progress=progress)
                 for linear in (_formula(network, text) for text in _LINEAR)
                 for progress in (False, True)
             ),
