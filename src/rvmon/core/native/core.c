@@ -2,8 +2,8 @@
  * functions.
  *
  * A sample goes to every part that reads one of its names or has something due. There, time first
- * passes up to the tick before (approach), so that what it decides comes first; then updates are taken
- * (take_update), and the position is judged (arrive). */
+ * passes up to the tick before (approach), so that decisions by time alone come first; then updates are
+ * taken (take_update), and the position is judged (arrive). */
 #include "input/input.h"
 #include "notes/notes.h"
 #include "results/results.h"
@@ -50,7 +50,7 @@ static bool prepare_part(rv_monitor *m, part *p)
     return true;
 }
 
-/* Allocate what lives as long as the monitor. Sizes have one to spare: the plan may declare none. */
+/* Allocate what lives as long as the monitor. Sizes are one larger, as the plan may declare none. */
 static bool prepare(rv_monitor *m)
 {
     const plan *p = &m->plan;
@@ -88,7 +88,7 @@ static bool prepare(rv_monitor *m)
     return margins_prepare(m);
 }
 
-/* Reset everything that belongs to a run. Absent names are declared again, as home_begin forgot
+/* Reset everything that belongs to a run. Absent names are declared again, as home_begin forgets
  * them. */
 static bool begin_run(rv_monitor *m)
 {
@@ -161,7 +161,7 @@ rv_monitor *rv_new(const void *bytes, size_t size, rv_memory memory)
 void rv_free(rv_monitor *m)
 {
     if (m != NULL) {
-        arena a = m->memory; /* the arena is part of the memory that it frees */
+        arena a = m->memory; /* a copy, as the arena is part of the memory that it frees */
         arena_release(&a);
     }
 }
@@ -240,7 +240,7 @@ bool distribute(rv_monitor *m, const rv_update *updates, int32_t count)
     return true;
 }
 
-/* A sample where there is one part without captured values, the common case: no inbox is filled. */
+/* A sample for a plan with one part without captured values, the common case: no inbox is filled. */
 static void step_alone(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
 {
     run *r = m->homes[0].root;
@@ -269,8 +269,8 @@ static void step_alone(rv_monitor *m, int64_t t, const rv_update *updates, int32
     arrive(r, t);
 }
 
-/* A sample with several parts. A part that reads none of its names and has nothing due is skipped,
- * unless every sample matters to it. */
+/* A sample for a plan with several parts. A part that reads none of its names and has nothing due is
+ * skipped, unless every sample matters to it. */
 static bool step_parts(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
 {
     int32_t i;
@@ -289,7 +289,7 @@ static bool step_parts(rv_monitor *m, int64_t t, const rv_update *updates, int32
     return true;
 }
 
-/* Report the margins settled by `t`; where rows are judged in bulk, at the end of the block only. */
+/* Report the margins settled by `t`; if rows are judged in bulk, only at the end of the block. */
 void settle_margins(rv_monitor *m, int64_t t)
 {
     int32_t i;
@@ -298,7 +298,7 @@ void settle_margins(rv_monitor *m, int64_t t)
     }
 }
 
-/* The code with which a call at `t` is refused; RV_OK: it is not. */
+/* The code with which a call at `t` is refused; RV_OK if it is not. */
 static inline int refusal(const rv_monitor *m, int64_t t)
 {
     if (m->finished) {

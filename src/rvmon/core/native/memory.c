@@ -1,7 +1,7 @@
-/* The allocator of a monitor: an arena of chunks from which blocks of a few sizes are cut. A block
- * that is given back goes to a list of its size class and is reused for the next of that class;
- * chunks are returned only when the monitor ends. So a monitor cannot leak, and works the same way
- * on a heap and in one block of a microcontroller.
+/* The allocator of a monitor: an arena of chunks from which blocks of a few sizes are cut. A block that
+ * is given back goes to a list of its size class and is reused for the next block of that class; chunks
+ * are returned only when the monitor ends. So a monitor cannot leak, and works the same way on a heap
+ * and in one block of a microcontroller.
  *
  * Sizes are rounded up to four classes per power of two, which wastes at most a fifth. On a heap a
  * block larger than a chunk gets a chunk of its own, so that growing it is a realloc. Giving and
@@ -38,7 +38,7 @@ static size_t class_of(size_t *size)
     return octave * 4 + (units >> octave);
 }
 
-/* Set the links to a chunk, and from the next one back to it; after realloc they have to follow it. */
+/* Set the links to a chunk, and from the next one back to it: after realloc they are out of date. */
 static void hook(chunk *one)
 {
     *one->link = one;
@@ -47,8 +47,7 @@ static void hook(chunk *one)
     }
 }
 
-/* A new chunk with `room` bytes behind its head, of which the address is returned; NULL: memory is
- * short. */
+/* Add a chunk with `room` bytes after its head; returns their address, or NULL: memory is short. */
 static char *add_chunk(arena *a, size_t room)
 {
     chunk *made = (a->from.allocate != NULL) ? a->from.allocate(CHUNK_HEAD + room) : NULL;
@@ -73,7 +72,7 @@ static void *take_as_it_is(arena *a, size_t *size)
     size_t room = *size;
     size_t class;
     char *made;
-    if (room > SIZE_MAX / 4) { /* beyond, sums of sizes could wrap */
+    if (room > SIZE_MAX / 4) { /* beyond that, sums of sizes could wrap around */
         return NULL;
     }
     class = class_of(&room);
@@ -143,7 +142,7 @@ void arena_give(arena *a, void *block, size_t size)
         return;
     }
     class = class_of(&room);
-    (void)memcpy(block, &a->spare[class], sizeof block); /* a spare block begins with the link */
+    (void)memcpy(block, &a->spare[class], sizeof block); /* a spare block starts with the link */
     a->spare[class] = block;
 }
 

@@ -102,7 +102,7 @@ machine machine_view(const plan *p, const automaton_plan *a)
     return made;
 }
 
-/* Header fields. Names stay below a quarter of 32 bits, as leaves number a signal times 2 plus 1. */
+/* Check the header. Names stay below a quarter of 32 bits, as leaves use 2 * signal + 1. */
 static bool check_header(const plan *p)
 {
     const plan_header *h = p->header;
@@ -118,7 +118,7 @@ static bool check_header(const plan *p)
                       p->counts[SEC_SUBSCRIPTIONS]);
 }
 
-/* Every subscription leads to a signal or event of a part that bears the same name. */
+/* Whether every subscription leads to a signal or event of a part that has the same name. */
 static bool check_subscriptions(const plan *p)
 {
     int32_t name;
@@ -146,9 +146,9 @@ static bool check_subscriptions(const plan *p)
     return true;
 }
 
-/* The ranges and counts of a part. Bounds against the number of nodes keep the memory of a run
- * proportional to the plan; with captured values judges fit the bits of an int32, and there is one
- * requirement. */
+/* Check the ranges and counts of a part. Bounds by the number of nodes keep the memory of a run
+ * proportional to the plan. With captured values, judges must fit the bits of an int32, and there is
+ * one requirement. */
 static bool check_part(const plan *p, const part_plan *x)
 {
     const int32_t nodes = x->nodes.count;
@@ -185,7 +185,7 @@ static bool check_part(const plan *p, const part_plan *x)
                    && is_within(x->each_field, 0, p->events[x->events.first + x->each_event].fields)));
 }
 
-/* Constants are known and not NaN, which comparisons rely on. */
+/* Whether constants are known and not NaN, which comparisons rely on. */
 static bool check_numbers(const plan *p)
 {
     int64_t i;

@@ -4,7 +4,8 @@
 
 #include <math.h>
 
-/* Fields of a part's events are numbered without gaps, so that they fit its `fields`. */
+/* Check signals and events. Fields of a part's events are numbered without gaps, so that they fit its
+ * `fields`. */
 bool check_inputs(const plan *p, const part_plan *x)
 {
     int32_t i;
@@ -35,7 +36,7 @@ bool check_inputs(const plan *p, const part_plan *x)
 }
 
 /* Check a program: operands are in range, it ends, and its stack neither underflows nor reaches
- * PROGRAM_DEPTH. No jumps, so one pass over the words is enough. */
+ * PROGRAM_DEPTH. Programs have no jumps, so one pass over the words is enough. */
 static bool check_program(const plan *p, const part_plan *x, int64_t place)
 {
     int32_t depth = 0;
@@ -124,8 +125,8 @@ bool check_atoms(const plan *p, const part_plan *x)
     return true;
 }
 
-/* Operands of a node: as many as its operator needs, each before the node itself. So evaluation in
- * index order terminates and needs no recursion. */
+/* Check the operands of a node: as many as its operator needs, each before the node itself. So
+ * evaluation in index order terminates and needs no recursion. */
 static bool check_operands(const plan *p, const part_plan *x, const node_plan *n, int32_t place)
 {
     switch (n->op) {
@@ -145,8 +146,8 @@ static bool check_operands(const plan *p, const part_plan *x, const node_plan *n
     }
 }
 
-/* Memory and timer of a node: the kind of memory that its operator needs. Timers have to be
- * numbered in the order of their nodes, which makes each of them one node's. */
+/* Check the memory and timer of a node: the kind of memory that its operator needs. Timers have to be
+ * numbered in the order of their nodes, so that no two nodes share one. */
 static bool check_memory(const part_plan *x, const node_plan *n, int32_t *timed_nodes)
 {
     int32_t slots = 0;
@@ -175,7 +176,7 @@ static bool check_memory(const part_plan *x, const node_plan *n, int32_t *timed_
     return n->timer == *timed_nodes - 1;
 }
 
-/* What a link adds to a letter. Weights are 0 unless a table of letters classes them; then
+/* Check what a link adds to a letter. Weights are 0 unless a table classifies letters; then
  * check_letters bounds their sums, so that a running sum stays in 32 bits. */
 static bool check_weights(const plan *p, const part_plan *x, const link_plan *l)
 {
@@ -207,7 +208,7 @@ static bool check_links(const plan *p, const part_plan *x, list links)
     return true;
 }
 
-/* An atom whose left program yields the numbers of a window or PASSED node. */
+/* Check an atom whose left program yields the numbers of a WINDOW or PASSED node. */
 static bool check_read(const plan *p, const part_plan *x, int32_t number)
 {
     const atom_plan *a;
@@ -218,14 +219,14 @@ static bool check_read(const plan *p, const part_plan *x, int32_t number)
     return (a->op == ATOM_COMPARE) || (a->op == ATOM_PAYLOAD);
 }
 
-/* Of PASSED: `a` yields the duration, `low` is the program of the instant it counts from. */
+/* Check a PASSED node: `a` yields the duration, `low` is the program for the instant it counts from. */
 static bool check_passed(const plan *p, const part_plan *x, const node_plan *n)
 {
     return check_read(p, x, n->a) && is_within(n->b, 0, 2) && check_program(p, x, n->low);
 }
 
-/* Of WINDOW: the aggregate, its limit or result, its members. Minimum, maximum and first value have
- * no order with a limit here: they exist as WINDOW_NUMBER only. */
+/* Check a WINDOW node: the aggregate, its limit or result, its members. Minimum, maximum and first value
+ * are not compared with a limit here: they exist only as WINDOW_NUMBER. */
 static bool check_window(const plan *p, const part_plan *x, const node_plan *n)
 {
     const int32_t fold = n->b & WINDOW_FOLD;
@@ -283,7 +284,7 @@ bool check_nodes(const plan *p, const part_plan *x)
 
 /* Margins. */
 
-/* A measure reads a node; a DISTANCE a comparison of two numbers. */
+/* Check a measure: it reads a node, a DISTANCE a comparison of two numbers. */
 static bool check_measure(const plan *p, const part_plan *x, const measure_plan *m)
 {
     const node_plan *n;
@@ -308,9 +309,9 @@ static bool check_measure(const plan *p, const part_plan *x, const measure_plan 
     return (op == ATOM_REAL) || (op == ATOM_COMPARE) || (op == ATOM_PAYLOAD);
 }
 
-/* The formula that is measured: leaves are numbered in their order, one measure each. A SHIFT
- * stands over an UNTIL ahead or a SINCE back, with a distance other than 0: what the sweep of
- * margin_windows.c handles. */
+/* Check a measured formula: leaves are numbered in order, with one measure each. A SHIFT is over an
+ * UNTIL ahead or a SINCE back, by a distance other than 0, which is what the sweep of margin_windows.c
+ * handles. */
 static bool check_margin(const plan *p, const part_plan *x, const margin_plan *g)
 {
     const operator_plan *nodes;

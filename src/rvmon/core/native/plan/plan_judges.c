@@ -59,7 +59,7 @@ static bool check_rows(const plan *p, const automaton_plan *a)
     return has(p, SEC_TICKS, a->cuts, last);
 }
 
-/* The rule for the end of the trace: clauses of a location, tests of a clause. */
+/* Check the rule for the end of the trace: clauses of a location, tests of a clause. */
 static bool check_clauses(const plan *p, const automaton_plan *a)
 {
     int64_t clauses;
@@ -104,10 +104,10 @@ bool check_automaton(const plan *p, const automaton_plan *a)
            && check_clauses(p, a);
 }
 
-/* A diagram maps letters to classes through decisions. Each child lies behind its parent, so
- * following them ends; decisions are contiguous, so one scan up to the farthest child checks all. A
- * record: the proposition; the digit for each truth, for the worse and for the better reading; the
- * number of children; the children. */
+/* A diagram maps letters to classes through decisions. Each child comes after its parent, so following
+ * children ends; decisions are contiguous, so one scan up to the farthest child checks them all. A
+ * decision consists of: the proposition; the digit for each truth, for the worse and for the better
+ * reading; the number of children; the children. */
 static bool check_diagram(const plan *p, const judge_plan *j, int64_t at, int32_t classes)
 {
     const int64_t end = p->counts[SEC_INTS];
@@ -176,14 +176,14 @@ static bool check_letters(const plan *p, const part_plan *x, int32_t judge_numbe
     return (low[0] >= 0) && (low[1] >= 0) && (high[0] < letters) && (high[1] < letters);
 }
 
-/* A node of the part, or -1 for none. */
+/* Whether a number is a node of the part, or -1 for none. */
 static bool is_node(const part_plan *x, int32_t node)
 {
     return is_within(node, -1, x->nodes.count);
 }
 
-/* The nodes, engine and tables of a judge. An episodic judge has to say when episodes end; captured
- * values can blur only where there is a trigger. */
+/* Check the nodes, engine and tables of a judge. An episodic judge has to say when episodes end;
+ * captured values can blur only if there is a trigger. */
 bool check_judge(const plan *p, const part_plan *x, int32_t number)
 {
     const judge_plan *j = &p->judges[x->judges.first + number];
@@ -241,7 +241,7 @@ static bool check_operator(const plan *p, const part_plan *x, const operator_pla
     }
 }
 
-/* A chain: windows each over the one before, the innermost over a leaf or a junction. */
+/* Check a chain: each window is over the one before, the innermost over a leaf or a junction. */
 static bool check_chain(const plan *p, const form_plan *f)
 {
     const operator_plan *nodes = &p->operators[f->operators.first];
@@ -270,8 +270,8 @@ static bool check_chain(const plan *p, const form_plan *f)
     return true;
 }
 
-/* The operators of a formula with `leaves` leaves: operands precede their operators, and a state
- * per leaf needs no more room than one per operator. */
+/* Check the operators of a formula with `leaves` leaves: operands precede their operators, and there
+ * are no more leaves than operators. */
 bool check_operators(const plan *p, const part_plan *x, list operators, int32_t leaves)
 {
     int32_t k;

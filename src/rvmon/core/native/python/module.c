@@ -8,8 +8,8 @@
 
 enum { TAKEN, LEFT, FAILED };
 
-/* Convert a sample and give it to the core. LEFT: it takes a closer look, or the core refused it;
- * nothing happened. FAILED: with an error. No Python code runs in here. */
+/* Convert a sample and pass it to the core. LEFT: Python has to look at it, or the core refused it;
+ * nothing changed. FAILED: an error is set. No Python code runs in here. */
 static inline int take(monitor *c, int64_t t, PyObject *values, bool looked)
 {
     int code = RV_FINISHED;
@@ -32,6 +32,7 @@ static inline int take(monitor *c, int64_t t, PyObject *values, bool looked)
     return (code == RV_OK) ? TAKEN : (PyErr_Occurred() != NULL) ? FAILED : LEFT;
 }
 
+/* Call a step function of Python with the arguments of a call of step. */
 static PyObject *looked_closer(PyObject *function, PyObject *const *args, Py_ssize_t count,
                                PyObject *names)
 {
@@ -61,8 +62,8 @@ static PyObject *looked_closer(PyObject *function, PyObject *const *args, Py_ssi
     return made;
 }
 
-/* Step without Python; returns what was decided. NULL without an error: Python has to look at the
- * sample. */
+/* Step without running Python; returns what was decided. NULL without an error: Python has to look at
+ * the sample. */
 static inline PyObject *step_quickly(monitor *c, int64_t t, PyObject *values)
 {
     PyObject *made = NULL;
@@ -91,12 +92,12 @@ static PyObject *monitor_step_ns(PyObject *self, PyObject *const *args, Py_ssize
     return looked_closer(c->look_closer_ns, args, count, names);
 }
 
-/* From 2^23 s (97 days) on neighbouring doubles are more than a nanosecond apart. */
+/* From 2^23 s (97 days) on, neighbouring doubles are more than a nanosecond apart. */
 #define COARSE_FROM 8388608.0
 
-/* The nanoseconds of a float of seconds, as `ticks_of_seconds` has them: of the shortest decimal that
- * reads as it. false: not certain here. The fraction is exact, products nearly: hence the margin in
- * `half`. */
+/* Seconds in nanoseconds, as `ticks_of_seconds` computes them: those of the shortest decimal that reads
+ * as this float. False: not certain here. The fraction is exact but products are rounded, hence the
+ * margin in `half`. */
 static bool ticks_of_float(double seconds, int64_t *t)
 {
     const int64_t whole = (seconds > -4e9) && (seconds < 4e9) ? (int64_t)seconds : 0;
@@ -108,7 +109,7 @@ static bool ticks_of_float(double seconds, int64_t *t)
         return false;
     }
     while ((fabs(part * power - rint(part * power)) > half * power) && (power < 1e9)) {
-        power *= 10.0; /* the fewest digits that read as this float */
+        power *= 10.0; /* until the digits are enough to read as this float */
     }
     *t = whole * INT64_C(1000000000) + (int64_t)(rint(part * power) * (1e9 / power));
     return fabs(part * power - rint(part * power)) <= half * power;
@@ -149,7 +150,7 @@ static bool is_free(const monitor *c)
     return !c->busy;
 }
 
-/* judge(t, values, looked): whether the sample was taken; `looked` says that Python has checked it. */
+/* judge(t, values, looked): whether the sample was taken; `looked`: Python has already checked it. */
 static PyObject *judge_of(monitor *c, PyObject *args)
 {
     long long t;
@@ -258,7 +259,7 @@ static int monitor_traverse(PyObject *self, visitproc visit, void *arg)
     return 0;
 }
 
-/* What is borrowed goes with its owner: no call is possible any more. */
+/* Borrowed references end with their owner, so `busy` makes further calls impossible. */
 static int monitor_clear(PyObject *self)
 {
     monitor *c = (monitor *)self;

@@ -1,8 +1,7 @@
-/* What module.c makes of a margin: the types Bounds and Figure, which have what a figure says at fixed
- * places. Python's types of figures derive from them; an object is made of the bounds when one is asked
- * for.
+/* The types Bounds and Figure, into which margins are converted, with fields at fixed places. Python's
+ * types of figures derive from them. The bounds of a figure become an object when they are read.
  *
- * The collector does not look at those that are made here: nothing that they refer to refers to them. */
+ * The collector does not track these objects: nothing that they refer to refers back to them. */
 #include "python/module.h"
 
 typedef struct {
@@ -14,9 +13,9 @@ typedef struct {
 
 typedef struct {
     PyObject_HEAD
-    PyObject *requirement;     /* NULL: not set; so is the next one */
+    PyObject *requirement;     /* NULL: not set, as for the next field */
     PyObject *number;
-    PyObject *kind;            /* the type of its bounds; NULL: they are not set */
+    PyObject *kind;            /* the type of its bounds; NULL: the bounds are not set */
     long long t;
     double low;
     double high;
@@ -130,7 +129,7 @@ bool add_figure_types(PyObject *module)
            && add_base_type(module, "Figure", &figure_spec, figure_members, figure_getset);
 }
 
-/* Whether figures can be of these types; false with an error. */
+/* Whether the types derive from Figure and Bounds; false with an error. */
 bool are_of_figures(const struct figures *f)
 {
     return derives(f->measured, figure_dealloc) && derives(f->robustness, bounds_dealloc);

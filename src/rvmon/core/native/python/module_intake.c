@@ -1,12 +1,12 @@
-/* Converting samples from Python: a dictionary of plain values becomes updates. Anything else, such as
- * a subclass, a NumPy scalar or an unknown name, makes `convert_sample` return false before anything is judged:
- * Python then looks closer, and passes plain values back or raises. */
+/* Converting samples from Python: a dictionary of plain values becomes updates. Anything else, such as a
+ * subclass, a NumPy scalar or an unknown name, makes `convert_sample` return false before anything is
+ * judged. Python then looks at the sample, and passes plain values back or raises an error. */
 #include "python/module.h"
 
-/* Why a field is unknown: the payload lacks it. */
+/* The cause of an unknown field that the payload lacks. */
 #define IS_NOT_SAID (-1)
 
-/* Convert a value other than a float; false: it takes a closer look. */
+/* Convert a value other than a float; false: Python has to look at it. */
 static bool number_of_other(PyObject *value, const reading *as, rv_number *number)
 {
     int beyond = 0;
@@ -48,7 +48,7 @@ static inline void take_float(PyObject *value, rv_number *number)
     }
 }
 
-/* Convert a value; false: it takes a closer look. */
+/* Convert a value; false: Python has to look at it. */
 static bool number_of(PyObject *value, const reading *as, rv_number *number)
 {
     if ((as->kind == IS_REAL) && PyFloat_Check(value)) {
@@ -58,8 +58,8 @@ static bool number_of(PyObject *value, const reading *as, rv_number *number)
     return number_of_other(value, as, number);
 }
 
-/* The name that is at a place of the sample; NULL: not a known name. The cache holds because mostly the
- * same key objects come in the same order. */
+/* The name at a place of the sample; NULL: not a known name. The cache mostly hits, as samples have the
+ * same key objects in the same order. */
 static const seen_name *name_at(intake *in, PyObject *name, int32_t place)
 {
     PyObject *found = NULL;
@@ -111,7 +111,7 @@ static inline bool convert_signal(intake *in, const seen_name *name, PyObject *v
     } else if (!number_of(value, &in->readings[name->number], &update->value)) {
         return false;
     } else {
-        /* It is converted. */
+        /* number_of() has converted it. */
     }
     if (update->value.kind == RV_UNKNOWN) {
         update->says = RV_SAYS_UNKNOWN;
@@ -200,8 +200,8 @@ static bool make_room(intake *in, int64_t count, int32_t fields)
     return true;
 }
 
-/* Convert several occurrences of an event; false: it takes a closer look, or with an error, memory is
- * short. */
+/* Convert several occurrences of an event; false: Python has to look at them, or, with an error, memory
+ * is short. */
 static bool convert_payloads(intake *in, int32_t name, PyObject *payloads, bool looked)
 {
     const Py_ssize_t count = PyTuple_Size(payloads);
@@ -240,8 +240,8 @@ static bool convert_event(intake *in, int32_t name, PyObject *value, bool looked
     return true;
 }
 
-/* Convert a sample; false: it takes a closer look, or with an error, memory is short. No Python code
- * runs: keys and values are of exact built-in types. */
+/* Convert a sample; false: Python has to look at it, or, with an error, memory is short. No Python code
+ * runs, as only keys and values of exact built-in types are read. */
 bool convert_sample(intake *in, PyObject *values, bool looked)
 {
     PyObject *name;
@@ -271,8 +271,8 @@ static void note_unknown(arrival *a, const rv_number *value, int64_t t)
     (*count)++;
 }
 
-/* Update input health by the sample taken at `t`. Skipped when everything was known and every signal
- * has come before. */
+/* Update input health by the sample taken at `t`. This is skipped if everything was known and every
+ * signal has come before. */
 void note_arrivals(intake *in, int64_t t)
 {
     static const rv_number none = {RV_UNKNOWN, {RV_IS_NONE}};
@@ -303,7 +303,7 @@ void note_arrivals(intake *in, int64_t t)
                 }
             }
         } else {
-            /* It has no payload. */
+            /* An event without a payload. */
         }
     }
 }
@@ -344,8 +344,8 @@ void free_intake(intake *in)
     (void)memset(in, 0, sizeof *in);
 }
 
-/* Set up how names and fields are read; false with an error. `words` and `kinds` are by signal, event,
- * field; `single` by name. */
+/* Set up how names and fields are read; false with an error. `words` and `kinds` are indexed by signal,
+ * event and field, `single` by name. */
 bool make_intake(intake *in, const rv_monitor *m, PyObject *numbers, PyObject *words,
                         PyObject *kinds, PyObject *single)
 {

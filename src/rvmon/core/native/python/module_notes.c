@@ -1,10 +1,10 @@
-/* Handing out notes. An attempt copies the words of its note, and makes bytes of them when asked.
- * Letters are shared: a piece holds a bytes object. For a full piece that is its letters; for one still
- * growing it has the piece's full capacity, and a last word that counts those written. An attempt knows
- * how many of them are its own, so later letters may be added without copying. */
+/* Returning notes to Python. An attempt copies the words of its note, and converts them to bytes when
+ * they are read. Letters are shared: each piece has a bytes object attached. For a full piece it has the
+ * letters; for a growing one it has the piece's full capacity, and a last word that counts the words
+ * written. An attempt knows how many of them are its own, so later letters are added without copying. */
 #include "python/module.h"
 
-/* The core freed a piece: remember its object, as this may happen while Python code must not run. */
+/* The core freed a piece: remember its object to release it later, as Python code must not run now. */
 void note_dropped(void *user, void *held)
 {
     note_cache *cache = (note_cache *)user;
@@ -34,7 +34,7 @@ PyObject *bytes_of_words(const int64_t *words, int64_t count)
     return PyBytes_FromStringAndSize((const char *)words, (Py_ssize_t)count * (Py_ssize_t)sizeof *words);
 }
 
-/* The letters of a full piece, made once. */
+/* The letters of a full piece as bytes, made once. */
 static PyObject *bytes_of_full(rv_piece *piece)
 {
     PyObject **held = (PyObject **)rv_piece_held(piece, 0);
@@ -51,7 +51,7 @@ static PyObject *bytes_of_full(rv_piece *piece)
     return Py_NewRef(*held);
 }
 
-/* Bytes that begin with at least `count` words of a growing piece. */
+/* Bytes that start with at least `count` words of a growing piece. */
 static PyObject *bytes_from(rv_piece *piece, int32_t count)
 {
     PyObject **held = (PyObject **)rv_piece_held(piece, 0);
@@ -76,7 +76,7 @@ static PyObject *bytes_from(rv_piece *piece, int32_t count)
     return Py_NewRef(*held);
 }
 
-/* The first `count` words of some bytes; the bytes themselves if these are all. */
+/* The first `count` words of a bytes object; the object itself if it has no more. */
 static PyObject *first_words(PyObject *bytes, int32_t count)
 {
     if (PyBytes_Size(bytes) == (Py_ssize_t)count * (Py_ssize_t)sizeof(int64_t)) {
@@ -85,7 +85,7 @@ static PyObject *first_words(PyObject *bytes, int32_t count)
     return bytes_of_words((const int64_t *)(const void *)PyBytes_AsString(bytes), count);
 }
 
-/* The full pieces of a note, as a tuple, which its last piece holds for the next note. */
+/* The full pieces of a note as a tuple, which stays attached to the last piece for the next note. */
 static PyObject *pieces_of(const rv_note *note)
 {
     PyObject **held = (PyObject **)rv_piece_held(note->last, 1);
@@ -126,8 +126,8 @@ static PyObject *pieces_of(const rv_note *note)
     return made;
 }
 
-/* The letters of a note: the tuple of full pieces, bytes that begin with the last piece, which notes
- * share, and the number of its words; None twice and 0 if it has none. */
+/* The letters of a note: the tuple of full pieces; bytes that start with the last piece, shared by
+ * notes; and the number of words of that piece. None, None and 0 if the note has no letters. */
 PyObject *letters_of(const rv_note *note)
 {
     PyObject *pieces;
@@ -192,8 +192,8 @@ void free_note(attempt_record *of)
     Py_CLEAR(of->note.last);
 }
 
-/* The captured values, or None; with a note (values, note, state, pieces, last piece), None for what is
- * missing. */
+/* The captured values, or None. With a note, a tuple (values, note, state, pieces, last piece), in which
+ * missing parts are None. */
 PyObject *noted_with(const note_copy *note, PyObject *values)
 {
     PyObject *words;

@@ -1,4 +1,4 @@
-/* Making a monitor from a plan, the readings of its names and the attempt type; saving and loading. */
+/* Making a monitor from a plan, the readings of its names and the type of attempts; snapshots. */
 #include "python/module.h"
 
 /* Open the plan in `data`; false with an error. It is copied only if it is not aligned to 8. */
@@ -119,8 +119,8 @@ PyObject *save_of(monitor *c, PyObject *unused)
     return made;
 }
 
-/* load(bytes): continue that run; false, without effect, if the bytes are not a run of this plan. A new
- * monitor is loaded and replaces the old one only on success. */
+/* load(bytes): continue a saved run; False, without effect, if the bytes are not a run of this plan. A
+ * new monitor is loaded, which replaces the old one only on success. */
 PyObject *load_of(monitor *c, PyObject *bytes)
 {
     const rv_memory heap = {malloc, realloc, free, NULL, 0};

@@ -5,20 +5,20 @@
  * tracking millions of them would cost more than making them. */
 #include "python/module.h"
 
-/* Whether the type has a header for the collector, as every class made in Python has. */
+/* Whether objects of a type have a header for the collector, as those of every Python class have. */
 static bool is_collected(PyTypeObject *type)
 {
     return (PyType_GetFlags(type) & Py_TPFLAGS_HAVE_GC) != 0U;
 }
 
-/* An object of which the collector does not know, whose time it would take for nothing, and of which
- * nothing is set; NULL with an error. */
+/* An uninitialised object that the collector does not track, as it would only waste time on it; NULL
+ * with an error. */
 PyObject *new_uncollected(PyTypeObject *type)
 {
     return is_collected(type) ? _PyObject_GC_New(type) : PyType_GenericAlloc(type, 0);
 }
 
-/* Free an object that was made so. */
+/* Free an object that new_uncollected() made. */
 void free_uncollected(PyObject *self)
 {
     PyTypeObject *type = Py_TYPE(self);
@@ -53,7 +53,7 @@ static void record_dealloc(PyObject *self)
     free_uncollected(self);
 }
 
-/* What was set; else the captured values with the note, if there is one. */
+/* `_noted`: the value that was set, else the captured values with the note, if there is one. */
 static PyObject *get_noted(PyObject *self, void *unused)
 {
     attempt_record *own = (attempt_record *)self;
@@ -81,7 +81,7 @@ static int set_noted(PyObject *self, PyObject *value, void *unused)
     return 0;
 }
 
-/* The instant of the decision: most attempts are never asked for it, so it is no object. */
+/* `decided`, stored as a number instead of an object, as most attempts are never asked for it. */
 static PyObject *get_decided(PyObject *self, void *unused)
 {
     const attempt_record *own = (const attempt_record *)self;
@@ -108,14 +108,14 @@ static int set_decided(PyObject *self, PyObject *value, void *unused)
     return 0;
 }
 
-/* The late fields, by their places. */
+/* The names of the late fields, by their places in `objects`. */
 static const char *const late_names[OBJECTS] = {
     [REASON] = "reason", [DEADLINE] = "deadline", [AT_TRIGGER] = "at_trigger",
     [AT_DECISION] = "at_decision", [REQUIRED] = "required", [CAPTURED] = "captured",
     [BLAME] = "blame", [FORECAST] = "forecast", [ROBUSTNESS] = "robustness",
 };
 
-/* A late field, computed now if it was not. */
+/* A late field, computed now if it was not computed before. */
 static PyObject *get_late(PyObject *self, void *place)
 {
     PyObject **field = &((attempt_record *)self)->objects[(uintptr_t)place];
@@ -196,8 +196,8 @@ static bool add_name(PyObject *names, const char *text)
     return done;
 }
 
-/* Add a type to the module. Its __slots__ list all fields, so that a dataclass deriving from it adds
- * none of its own; false with an error. */
+/* Add a type to the module; false with an error. Its __slots__ list all fields, so that a dataclass that
+ * derives from it adds none of its own. */
 bool add_base_type(PyObject *module, const char *name, PyType_Spec *spec, const PyMemberDef *set,
                    const PyGetSetDef *got)
 {
@@ -222,8 +222,8 @@ bool add_record_type(PyObject *module)
     return add_base_type(module, "Record", &record_spec, record_members, record_getset);
 }
 
-/* Whether a type, or one that it derives from, frees its objects so: it has what these have; false
- * with an error. */
+/* Whether a type derives from the one whose objects `dealloc` frees, and so has its fields; false with
+ * an error. */
 bool derives(PyTypeObject *type, void (*dealloc)(PyObject *self))
 {
     PyTypeObject *base = type;

@@ -62,7 +62,7 @@ PyObject *open_of(monitor *c, PyObject *unused)
     return made;
 }
 
-/* The letter spans that notes refer to, by number. */
+/* The spans of letters that notes refer to, by number. */
 static PyObject *spans_of(const monitor *c)
 {
     PyObject *made = PyList_New(0);
@@ -178,7 +178,7 @@ PyObject *instant(int64_t t, int64_t none)
     return (t == none) ? Py_NewRef(Py_None) : PyLong_FromLongLong((long long)t);
 }
 
-/* The ranges at which an operator has a value, as bytes. */
+/* The ranges of positions at which an operator has a value, as bytes. */
 static PyObject *known_of(const monitor *c, int32_t number, bool better, bool value)
 {
     const rv_range *found;
@@ -191,7 +191,7 @@ static PyObject *known_of(const monitor *c, int32_t number, bool better, bool va
                                      (Py_ssize_t)count * (Py_ssize_t)sizeof *found);
 }
 
-/* truths(operator): ranges where it is surely true, and surely false. */
+/* truths(operator): the ranges at which it is certainly true, and certainly false. */
 PyObject *truths_of(monitor *c, PyObject *number)
 {
     const long long place = PyLong_AsLongLong(number);

@@ -1,7 +1,8 @@
-/* How module.c judges rows: buffers of columns become those of the core. */
+/* Judging rows from Python: buffers of columns become columns of the core; and reports of lost, found
+ * and late names. */
 #include "python/module.h"
 
-/* The buffers of a call, which all have a value for each row. */
+/* The buffers of a call, each with a value per row. */
 typedef struct {
     Py_buffer *held;
     uint8_t *taken;            /* by name, whether it has a column */
@@ -10,7 +11,8 @@ typedef struct {
     int64_t rows;
 } buffers;
 
-/* The values of an object that has so many bytes for each row; NULL with an error. None has none. */
+/* Borrow the values of an object that has `size` bytes per row; false with an error. For None, `values`
+ * is NULL. */
 static bool borrow_values(buffers *all, PyObject *object, size_t size, const void **values)
 {
     Py_buffer *own;
@@ -35,7 +37,7 @@ static bool borrow_values(buffers *all, PyObject *object, size_t size, const voi
     return true;
 }
 
-/* A field out of (kind, values, says); of one that is unknown the values are None. */
+/* Cells from (kind, values, says); the values of an unknown field are None. */
 static bool borrow_cells(buffers *all, PyObject *given, const reading *as, rv_column *column)
 {
     static const size_t sizes[] = {sizeof(double), sizeof(int64_t), 1};
@@ -62,7 +64,7 @@ static bool borrow_cells(buffers *all, PyObject *given, const reading *as, rv_co
     return true;
 }
 
-/* The columns of the fields of an event. */
+/* The columns of the fields of an event; false with an error. */
 static bool borrow_fields(const monitor *c, buffers *all, PyObject *given, rv_column *column)
 {
     const reading *event = &c->in.readings[column->name];
@@ -79,14 +81,14 @@ static bool borrow_fields(const monitor *c, buffers *all, PyObject *given, rv_co
         (void)PyErr_NoMemory();
         return false;
     }
-    column->fields = fields; /* they are given back with all columns */
+    column->fields = fields; /* rows_of() frees them with the columns */
     for (i = 0; good && (i < event->fields); i++) {
         good = borrow_cells(all, PyTuple_GetItem(given, i), &as[i], &fields[i]);
     }
     return good;
 }
 
-/* A column out of (name, cells), or of an event (name, says, fields or None). */
+/* A column from (name, cells), or for an event from (name, says, fields or None). */
 static bool borrow_column(const monitor *c, buffers *all, PyObject *given, rv_column *column)
 {
     PyObject *cells;
@@ -120,7 +122,7 @@ static bool borrow_column(const monitor *c, buffers *all, PyObject *given, rv_co
     return (fields == Py_None) || borrow_fields(c, all, fields, column);
 }
 
-/* Whether an event brings a payload in a row. */
+/* Whether an event has a payload in a row. */
 static bool brings_payload(const monitor *c, const rv_column *column, int64_t row)
 {
     bool found = false;
@@ -134,7 +136,8 @@ static bool brings_payload(const monitor *c, const rv_column *column, int64_t ro
     return found;
 }
 
-/* The rows before the first instant with two payloads of an event of which only one can be judged. */
+/* The number of rows before the first instant with two payloads of an event of which only one can be
+ * judged. */
 static int64_t judged_alone(const monitor *c, const int64_t *times, int64_t rows,
                             const rv_column *columns, int64_t count)
 {
@@ -143,7 +146,7 @@ static int64_t judged_alone(const monitor *c, const int64_t *times, int64_t rows
     int64_t k;
     for (i = 0; i < count; i++) {
         const rv_column *column = &columns[i];
-        int64_t begin = 0; /* of the rows of one instant */
+        int64_t begin = 0; /* the first row of the current instant */
         int64_t payloads = 0;
         for (k = 0; (column->fields != NULL) && (c->in.readings[column->name].single != 0) && (k < found);
              k++) {
@@ -173,8 +176,8 @@ static int judge_rows(monitor *c, const buffers *all, const rv_column *columns, 
     return code;
 }
 
-/* rows(times, columns): how many were judged; fewer than given if one is before those above it, or one
- * takes a closer look. */
+/* rows(times, columns): how many rows were judged; fewer than given if a row is earlier than the one
+ * above it, or if Python has to look at one. */
 PyObject *rows_of(monitor *c, PyObject *args)
 {
     PyObject *times;
@@ -232,9 +235,9 @@ PyObject *rows_of(monitor *c, PyObject *args)
     return made;
 }
 
-/* How a caller reports that names are lost, and found, or came too late. */
+/* Names that are lost, are found, or came too late. */
 
-/* Take the numbers of names; false with an error. */
+/* Read the numbers of names; false with an error. */
 static bool take_numbers(const monitor *c, PyObject *all, int32_t *numbers)
 {
     Py_ssize_t i;
@@ -252,7 +255,7 @@ static bool take_numbers(const monitor *c, PyObject *all, int32_t *numbers)
     return true;
 }
 
-/* Report it to the core; false if what is there was judged already. */
+/* Report names and an instant to the core; False if that instant was already judged. */
 PyObject *pass_on(monitor *c, PyObject *args, telling tell)
 {
     PyObject *names;
@@ -277,10 +280,10 @@ PyObject *pass_on(monitor *c, PyObject *args, telling tell)
         } else if (is_done(code)) {
             made = Py_NewRef(Py_True);
         } else {
-            /* An error was raised. */
+            /* is_done() has set an error. */
         }
     } else {
-        /* The same. */
+        /* take_numbers() has set an error. */
     }
     PyMem_Free(numbers);
     Py_DECREF(all);
@@ -297,7 +300,7 @@ PyObject *found_of(monitor *c, PyObject *args)
     return pass_on(c, args, rv_found);
 }
 
-/* late(names, t); of what cannot be read names is None. */
+/* late(names, t): `names` is None if the sample cannot be read. */
 PyObject *late_of(monitor *c, PyObject *args)
 {
     PyObject *names;

@@ -1,10 +1,10 @@
-/* CPython as module.c sees it: <Python.h>, or where that is missing (a bare Debian has Python
-   without headers) the part of the stable ABI of 3.11 that is used, declared here.
+/* CPython as module.c sees it: <Python.h> or, where that is missing (a bare Debian has Python without
+   headers), own declarations of the part of the stable ABI of 3.11 that is used.
 
-   With RVMON_OWN_PYTHON_H defined the declarations below are taken. The layouts that they state are
-   fixed by the stable ABI for all later versions of Python 3 with a GIL; a free-threaded build has
-   another layout of objects and needs the real header. tests/rvmon/native/test_build.py compares
-   each line of here with the real header, and so what is added in the way of its neighbours. */
+   With RVMON_OWN_PYTHON_H defined, the declarations below are used. Their layouts are fixed by the
+   stable ABI for all later versions of Python 3 with a GIL; a free-threaded build has another layout
+   of objects and needs the real header. tests/rvmon/native/test_build.py compares each line below with
+   the real header, so additions must follow the form of the lines around them. */
 #ifndef RVMON_PYTHON_ABI_H
 #define RVMON_PYTHON_ABI_H
 
@@ -163,7 +163,7 @@ typedef struct bufferinfo {
 #endif
 #if defined(RVMON_OWN_PYTHON_H) || defined(RVMON_COMPARE_PYTHON_H)
 
-/* Objects, then functions: one a line. A name that the real header has a macro of, too, stands in
+/* Objects, then functions, one per line. A name for which the real header also has a macro is in
    parentheses. */
 
 extern PyObject _Py_NoneStruct;
@@ -256,8 +256,8 @@ PyObject *PyUnicode_FromString(const char *);
 #endif
 #ifdef RVMON_OWN_PYTHON_H
 
-/* What is made of these. References are counted by functions and not in place, so that objects
-   which never die (3.12 and later) are left alone. */
+/* Macros over these declarations. Reference counts change by function calls, not in place, so that
+   immortal objects (3.12 and later) are left alone. */
 
 #if defined(__GNUC__) || defined(__clang__)
 #define PyMODINIT_FUNC __attribute__((visibility("default"))) PyObject *
@@ -320,10 +320,10 @@ static inline PyObject *rvmon_new_reference(PyObject *object)
 
 #endif
 
-/* A function as the value of a slot: ISO C knows no direct way from functions to `void *`. */
+/* A function as the value of a slot: ISO C has no direct conversion from functions to `void *`. */
 #define RVMON_SLOT(function) ((void *)(uintptr_t)(function))
 
-/* A module of functions, which `execute` fills; it needs no other thread to wait for it. */
+/* A module with functions, which `execute` completes; it does not need the GIL. */
 #ifdef Py_GIL_DISABLED
 #define RVMON_WITHOUT_GIL {Py_mod_gil, Py_MOD_GIL_NOT_USED},
 #else
@@ -342,7 +342,7 @@ static inline PyObject *rvmon_new_reference(PyObject *object)
         return PyModuleDef_Init(&module_definition);                                \
     }
 
-/* Where one thread runs at a time anyway, a critical section is a block. */
+/* Where only one thread runs at a time anyway, a critical section is a plain block. */
 #ifndef Py_BEGIN_CRITICAL_SECTION
 #define Py_BEGIN_CRITICAL_SECTION(object) {
 #define Py_END_CRITICAL_SECTION() }
