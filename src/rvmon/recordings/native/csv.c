@@ -1,9 +1,9 @@
-/* Text to rows of cells. */
+/* Splitting of text into rows of cells. */
 #include "csv.h"
 
 #include <string.h>
 
-/* As Python strips text; what is no ASCII is for Python. */
+/* The ASCII characters that Python's `strip` removes; Python strips all others. */
 static bool is_space(char c)
 {
     return (c == ' ') || ((c >= '\t') && (c <= '\r')) || ((c >= 28) && (c <= 31));
@@ -20,7 +20,7 @@ static csv_cell trimmed(csv_cell c)
     return c;
 }
 
-/* Where a label is noted, which is new or not; -1: there is no more room. */
+/* The index of a label in `labels`, where it is added if it is new; -1: there is no room. */
 static int64_t place_of(csv_reader *r, int32_t column, csv_cell c)
 {
     const int64_t start = c.from - r->text;
@@ -90,13 +90,13 @@ bool csv_take(csv_reader *r, int32_t column, csv_cell c)
     return true;
 }
 
-/* Behind the end of a line that begins here. */
+/* The place after an end of line, which starts at `at`. */
 static const char *behind(const char *at, const char *end)
 {
     return ((*at == '\r') && (at + 1 < end) && (at[1] == '\n')) ? at + 2 : at + 1;
 }
 
-/* Whether more text might change what ends here. */
+/* Whether the text after this one might change the cell or line that ends at `at`. */
 static bool is_open(const csv_reader *r, const char *at)
 {
     const char *end = r->text + r->size;
@@ -130,7 +130,7 @@ const char *csv_quoted(const csv_reader *r, const char *at, csv_cell *c, int64_t
 
 typedef enum { ROW_READ, ROW_BLANK, ROW_OPEN, ROW_ODD, ROW_NO_ROOM } row_end;
 
-/* One row from `at` on; `*next` is behind it, but of one that is open. */
+/* Read the row at `at`; sets `*next` after it and counts its lines, unless ROW_OPEN is returned. */
 static row_end read_row(csv_reader *r, const char *at, const char **next, int64_t *line)
 {
     const char *end = r->text + r->size;
@@ -189,7 +189,7 @@ static row_end read_row(csv_reader *r, const char *at, const char **next, int64_
     return has_room ? ROW_READ : ROW_NO_ROOM;
 }
 
-/* Behind the last line of the text that ends. */
+/* The end of the last whole line of the text. */
 static const char *behind_lines(const csv_reader *r)
 {
     const char *at = r->text + r->size;

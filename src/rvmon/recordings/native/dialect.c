@@ -1,7 +1,7 @@
-/* Text of another dialect of CSV as plain text, byte by byte. */
+/* Conversion of another dialect of CSV to plain CSV, byte by byte. */
 #include "csv.h"
 
-/* The comma of a cell that is a number with a comma for its point; NULL: it is no such number. */
+/* The comma in a cell that is a number with a decimal comma; NULL if it is no such number. */
 static const char *decimal_comma(const char *from, const char *to)
 {
     const char *at = from;
@@ -34,7 +34,7 @@ bool csv_as_plain(const char *text, int64_t size, char separator, bool has_comma
 {
     const char *const end = text + size;
     const char *at = text;
-    bool is_filled = false;    /* some cell of the line is not blank */
+    bool is_filled = false;    /* the line has a cell that is not blank */
     bool is_separated = false; /* the line has several cells */
     for (;;) {
         const char *const from = at;

@@ -7,7 +7,8 @@
 #define RVMON_SOURCE_HASH "" /* compiled by hand */
 #endif
 
-/* Python reads it, whose lock is kept then: to ask for it again and again would take long. */
+/* Read a number with Python. The GIL is taken once and kept until the end of the call, because
+ * taking it for every such number would be slow. */
 static double slow_number(void *taken, const char *text)
 {
     PyThreadState **thread = taken;
@@ -24,7 +25,7 @@ static double slow_number(void *taken, const char *text)
     return found;
 }
 
-/* Whether rooms are as large as they have to be, and places are of columns. */
+/* Whether all buffers are large enough, and slots are columns. */
 static bool fit(const csv_reader *r, const Py_buffer *numbers, const Py_buffer *says,
                 const Py_buffer *table)
 {
@@ -41,7 +42,7 @@ static bool fit(const csv_reader *r, const Py_buffer *numbers, const Py_buffer *
            && (r->label_room < INT32_MAX / 4) && (r->odd_room >= r->columns);
 }
 
-/* Read rows while other threads of Python run. */
+/* Read rows without the GIL. */
 static csv_end read_unlocked(csv_reader *r)
 {
     PyThreadState *thread = PyEval_SaveThread();
@@ -56,7 +57,7 @@ static csv_end read_unlocked(csv_reader *r)
 }
 
 /* read(text, start, is_last, longest, slots, kinds, absent, numbers, says, lines, odd, labels, table):
- * as csv.h says. Gives how it ended, rows, at, end, lines, odd cells, labels. */
+ * see csv.h. Returns why it ended, and the numbers rows, at, end, lines, odd cells, labels. */
 static PyObject *csv_read_rows(PyObject *module, PyObject *args)
 {
     enum { TEXT, SLOTS, KINDS, NUMBERS, SAYS, LINES, ODD, LABELS, TABLE, BUFFERS };
@@ -110,7 +111,7 @@ static PyObject *csv_read_rows(PyObject *module, PyObject *args)
     return made;
 }
 
-/* as_plain(text, separator, has_commas): as csv.h says; None in place of false. */
+/* as_plain(text, separator, has_commas): see csv.h; returns None in place of false. */
 static PyObject *csv_plain_text(PyObject *module, PyObject *args)
 {
     const char *text;
@@ -132,7 +133,7 @@ static PyObject *csv_plain_text(PyObject *module, PyObject *args)
     return made;
 }
 
-/* rise(times): whether each of these int64 is more than the one before. */
+/* rise(times): whether these int64 rise strictly. */
 static PyObject *csv_rise(PyObject *module, PyObject *args)
 {
     Py_buffer times;

@@ -1,4 +1,4 @@
-/* Decimal numbers, exactly. */
+/* Exact conversion of decimal numbers. */
 #ifndef RVMON_NUMBERS_H
 #define RVMON_NUMBERS_H
 
@@ -12,7 +12,7 @@ static const double POWERS[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 #define MOST_POWER 22
 
-/* So many digits fit in 64 bits. */
+/* Any number of this many digits fits in 64 bits. */
 #define MOST_DIGITS 19
 
 static const uint64_t WHOLE_POWERS[] = {
@@ -41,7 +41,7 @@ static const uint64_t WHOLE_POWERS[] = {
 #define EXACT ((uint64_t)1 << 53)
 #define TIME_LIMIT ((uint64_t)1 << 62)
 
-/* What may be multiplied by such a power and stays an instant. */
+/* By exponent, the largest number that times that power of ten is still an instant. */
 static const uint64_t MOST_TICKS[] = {
     TIME_LIMIT - 1,
     (TIME_LIMIT - 1) / 10,
@@ -55,19 +55,19 @@ static const uint64_t MOST_TICKS[] = {
     (TIME_LIMIT - 1) / 1000000000,
 };
 
-/* The longest number that is read here. */
+/* Characters; Python reads longer numbers. */
 #define LONGEST 127
 
 typedef struct {
     uint64_t mantissa;
-    int32_t behind;   /* digits behind the point */
+    int32_t behind;   /* digits after the point */
     int32_t exponent; /* as written */
     bool is_negative;
     bool is_long;  /* it has more digits than `mantissa` holds */
-    bool is_whole; /* nothing but digits behind its sign, so no point either */
+    bool is_whole; /* nothing but digits after its sign, so no point either */
 } decimal;
 
-/* What eight digits say, of which the first is in the lowest byte; a byte 0 is a zero, too. */
+/* The number that eight digits form, the first one in the lowest byte; a byte 0 counts as '0'. */
 static inline uint64_t eight_digits(uint64_t text)
 {
     text = (text & 0x0F0F0F0F0F0F0F0Fu) * 2561 >> 8; /* pairs, then fours, then all */
@@ -75,7 +75,7 @@ static inline uint64_t eight_digits(uint64_t text)
     return (text & 0x0000FFFF0000FFFFu) * 42949672960001u >> 32;
 }
 
-/* What the first digits say, up to seven. */
+/* The number that the first `count` digits form, at most seven. */
 static inline uint64_t some_digits(uint64_t text, int32_t count)
 {
     return eight_digits(text << 8 << (56 - 8 * count));
@@ -83,14 +83,15 @@ static inline uint64_t some_digits(uint64_t text, int32_t count)
 
 #define ZEROS 0x3030303030303030u
 
-/* Marks what is no digit in digits less '0', up to the first byte that is no ASCII; of what is
- * behind that nothing is known. */
+/* Mark the bytes that are no digits, in text XOR ZEROS. After the first byte that is not ASCII,
+ * marks may be wrong. */
 static inline uint64_t stops_in(uint64_t digits)
 {
     return ((digits + 0x7676767676767676u) | digits) & 0x8080808080808080u;
 }
 
-/* Digits, of which too many make no number; the result is unused then. */
+/* Append the digits at `at` to `*mantissa`, eight at a time; returns the place after them. Too many
+ * digits overflow: the caller does not use the mantissa then. */
 static inline const char *digits_at_once(const char *at, const char *to, uint64_t *mantissa)
 {
     uint64_t found = *mantissa;
@@ -112,7 +113,7 @@ static inline const char *digits_at_once(const char *at, const char *to, uint64_
     return at;
 }
 
-/* How many digits there are from the first that is not zero on. */
+/* The number of digits without leading zeros; other characters are skipped. */
 static inline int32_t held_digits(const char *at, const char *to)
 {
     int32_t held = 0;
@@ -122,8 +123,8 @@ static inline int32_t held_digits(const char *at, const char *to)
     return held;
 }
 
-/* The decimal number that begins here, as Python reads one; gives where it ends, NULL if there is
- * none, or a long one. */
+/* Read the decimal number at `from`, in the form that Python accepts; returns its end, NULL if
+ * there is none or it is too long. */
 static inline const char *decimal_at(const char *from, const char *to, decimal *d)
 {
     const bool is_signed = (from < to) && ((*from == '-') || (*from == '+'));
@@ -165,7 +166,7 @@ static inline const char *decimal_at(const char *from, const char *to, decimal *
     return (at - from > LONGEST) ? NULL : at;
 }
 
-/* A whole times or through a power of ten, rounded once; false: one of them is no exact double. */
+/* Convert a decimal by one operation, with one rounding; false unless both operands are exact. */
 static inline bool exact_of(const decimal *d, csv_number *made)
 {
     const int32_t power = d->exponent - d->behind;
@@ -177,7 +178,7 @@ static inline bool exact_of(const decimal *d, csv_number *made)
     return true;
 }
 
-/* A decimal as a whole number, of which no part is behind the point; up to `most`. */
+/* Convert a decimal without a fraction to an integer of at most `most`. */
 static inline int whole_of(const decimal *d, uint64_t most, csv_number *made)
 {
     uint64_t whole = d->mantissa;
@@ -186,7 +187,7 @@ static inline int whole_of(const decimal *d, uint64_t most, csv_number *made)
     }
     if (d->behind > 0) {
         const uint64_t scale = WHOLE_POWERS[d->behind];
-        most = (most > EXACT) ? EXACT : most; /* it is a double first */
+        most = (most > EXACT) ? EXACT : most; /* Python reads a number with a point as a double */
         if (whole % scale != 0) {
             return CSV_ODD;
         }
@@ -199,7 +200,7 @@ static inline int whole_of(const decimal *d, uint64_t most, csv_number *made)
     return CSV_YES;
 }
 
-/* A stamp as ticks, of which so many digits are whole; half a tick goes to the even one. */
+/* Convert a stamp, with `places` decimal places from its unit to a tick, to ticks: half to even. */
 static inline int stamp_of(const decimal *d, int32_t places, csv_number *made)
 {
     uint64_t ticks = d->mantissa;
@@ -228,7 +229,7 @@ static inline int stamp_of(const decimal *d, int32_t places, csv_number *made)
     return CSV_YES;
 }
 
-/* A number that is no exact whole times or through an exact power of ten. */
+/* Convert a number for which `exact_of` is false. */
 int csv_inexact(const csv_reader *r, const decimal *d, const char *from, const char *to,
                 csv_number *made);
 
@@ -246,12 +247,12 @@ static inline int number_of(const csv_reader *r, int32_t kind, const decimal *d,
 /* A number of up to 16 digits. */
 typedef struct {
     uint64_t mantissa;
-    int32_t behind; /* digits behind the point */
+    int32_t behind; /* digits after the point */
     bool is_negative;
 } short_decimal;
 
-/* Leave out the point, if that is the only stop: what lies before it moves up by a byte. Gives how
- * many digits are behind it; -1: it is something else. */
+/* Remove the point if it is the only mark in `stops`: the digits before it move up by one byte.
+ * Returns the number of digits after it, -1 if there is something else than a point. */
 static inline int32_t without_point(uint64_t *digits, uint64_t stops)
 {
     const int32_t place = csv_lowest(stops) - 7;
@@ -263,7 +264,7 @@ static inline int32_t without_point(uint64_t *digits, uint64_t stops)
     return 7 - place / 8;
 }
 
-/* The same of up to 16 characters that are more than eight. */
+/* `short_of` for 9 to 16 characters. */
 static inline bool longer_decimal(const char *to, int64_t size, short_decimal *made)
 {
     uint64_t high = csv_word(to - 8) ^ ZEROS;
@@ -293,8 +294,8 @@ static inline bool longer_decimal(const char *to, int64_t size, short_decimal *m
     return true;
 }
 
-/* A cell of digits and at most one point, 16 characters behind its sign at most; there are 16 bytes
- * before its end. False: it is something else. */
+/* Convert a cell of digits with at most one point, and maybe a minus; at most 16 characters after
+ * that. 16 bytes before its end must be readable. False if the cell is something else. */
 CSV_INNERMOST bool short_of(const char *from, const char *to, short_decimal *made)
 {
     const int64_t signs = (*from == '-') ? 1 : 0;

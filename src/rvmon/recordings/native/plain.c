@@ -1,27 +1,28 @@
-/* Plain rows, which most are: no text in quotes takes several lines, and each line ends as usual.
+/* The fast path for plain rows, the usual ones: each ends with LF or CRLF, and no quoted cell spans
+   lines.
 
-   They are taken some at a time: where cells end is found first, then columns of numbers are read
-   one by one, and what is left is put down row by row. */
+   Rows are read in stretches. First the ends of all cells are found, then each column of numbers is
+   read in one loop, and the cells left over are read row by row. */
 #include "numbers.h"
 
-/* Places that are noted at once: of each row where it begins and where its cells end. */
+/* Room of a stretch for offsets: a row takes one for its start and one for the end of each cell. */
 #define PLACES 8192
 
-/* Bytes that are looked at at once. */
+/* The most bytes of a stretch. */
 #define STRETCH 32768
 
-/* Bytes before the first row, so that those before the end of a number can be read. */
+/* `short_of` loads up to 16 bytes before the end of a number: the text must have as many. */
 #define BEFORE 16
 
 typedef struct {
-    const char *text; /* where the first row begins */
+    const char *text; /* the start of the first row */
     int64_t rows;
-    int32_t places[PLACES]; /* of each row what is before it, then the ends of its cells */
-    bool is_left[PLACES / 2]; /* of each row: some of its cells were not read */
+    int32_t places[PLACES]; /* by row: the offset before its first cell, then its cells' ends */
+    bool is_left[PLACES / 2]; /* by row (of two places at least): some cells are left over */
     bool some_are_left;
 } stretch;
 
-/* Which of eight bytes are not above a comma, as bits. */
+/* Bit i is set if byte i is not above a comma. The product gathers the marks in its highest byte. */
 static inline uint64_t marks_of(const char *at)
 {
     const uint64_t high = 0x8080808080808080u;
@@ -30,7 +31,7 @@ static inline uint64_t marks_of(const char *at)
     return ((~above & high) >> 7) * 0x0102040810204080u >> 56;
 }
 
-/* The same of 64. */
+/* The same for 64 bytes. */
 static inline uint64_t marks_in(const char *at)
 {
     return marks_of(at) | marks_of(at + 8) << 8 | marks_of(at + 16) << 16 | marks_of(at + 24) << 24
@@ -38,13 +39,13 @@ static inline uint64_t marks_in(const char *at)
            | marks_of(at + 56) << 56;
 }
 
-/* Find the plain rows in so much text, at most so many; gives where the last one ends. */
+/* Find the plain rows in `size` bytes, at most `most`; returns the end of the last one. */
 static int32_t split(const csv_reader *r, int32_t size, int64_t most, stretch *s)
 {
     const char *const text = s->text;
     const int32_t width = r->width;
     int32_t at = 0;
-    int32_t end = 0; /* of the rows */
+    int32_t end = 0; /* of the rows found */
     int32_t *next = s->places;
     const int32_t *last = next + width;
     *next = -1;
@@ -102,13 +103,13 @@ static int32_t split(const csv_reader *r, int32_t size, int64_t most, stretch *s
     return end;
 }
 
-/* Where the numbers of a place in a row are put. */
+/* A column of a stretch: where its cells are, and where their values are stored. */
 typedef struct {
     int32_t kind;
     csv_number *numbers;
     uint8_t *says;
-    const int32_t *ends; /* what is before its cell in the first row */
-    int64_t stride;      /* to that of the next row */
+    const int32_t *ends; /* the offset before its cell in the first row; the next one is its end */
+    int64_t stride;      /* from a row to the next in `ends` */
 } column;
 
 static inline csv_cell cell_at(const stretch *s, const int32_t *ends)
@@ -117,7 +118,8 @@ static inline csv_cell cell_at(const stretch *s, const int32_t *ends)
     return made;
 }
 
-/* Read a cell that is no short number: one of another form, or nothing; else it is left. */
+/* Read a cell that is no short number: another form of number, or an empty cell. Any other cell is
+ * left over, with the entry 0. */
 static void read_other(const csv_reader *r, const column *c, stretch *s, int64_t row)
 {
     const csv_cell found = cell_at(s, &c->ends[row * c->stride]);
@@ -155,7 +157,7 @@ static void read_reals(const csv_reader *r, const column *c, stretch *s)
     }
 }
 
-/* Whole numbers, and stamps of which so many digits are whole. */
+/* Read integers, or stamps that have `places` decimal places from their unit to a tick. */
 static void read_wholes(const csv_reader *r, const column *c, int32_t places, stretch *s)
 {
     const int32_t *ends = c->ends;
@@ -165,7 +167,7 @@ static void read_wholes(const csv_reader *r, const column *c, int32_t places, st
         const csv_cell found = cell_at(s, ends);
         short_decimal d;
         if (short_of(found.from, found.to, &d) && (d.behind <= places)
-            && (found.to[-1] != '.') /* digits alone are nanoseconds */
+            && (found.to[-1] != '.') /* nanoseconds must be digits alone */
             && (d.mantissa <= MOST_TICKS[places - d.behind])) {
             const int64_t whole = (int64_t)(d.mantissa * WHOLE_POWERS[places - d.behind]);
             c->numbers[row].whole = d.is_negative ? -whole : whole;
@@ -214,7 +216,7 @@ static void read_column(const csv_reader *r, const column *c, stretch *s)
     }
 }
 
-/* Put down the cells of the next row that were not read; false: there is no more room. */
+/* Store the cells of the next row that are left over; false if there is no room. */
 static bool take_left(csv_reader *r, const stretch *s, int64_t row)
 {
     const int32_t *ends = &s->places[row * (r->width + 1)];
@@ -239,7 +241,7 @@ int64_t csv_plain(csv_reader *r, const char *lines_end)
 {
     stretch s;
     int64_t most = PLACES / ((int64_t)r->width + 1);
-    int64_t size = (r->longest < STRETCH) ? r->longest : STRETCH; /* so no cell is too long */
+    int64_t size = (r->longest < STRETCH) ? r->longest : STRETCH; /* no cell can be too long */
     int32_t end;
     int32_t place;
     int64_t row;

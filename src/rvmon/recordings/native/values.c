@@ -1,12 +1,12 @@
-/* Single cells as numbers, exactly. */
+/* Exact conversion of single cells to values. */
 #include "numbers.h"
 
 #include <math.h>
 
-/* A whole number of up to 19 digits by an exact power of ten, rounded once; false: it is not sure.
+/* Divide an integer of up to 19 digits by an exact power of ten, rounding once; false: not certain.
  *
- * The quotient's error is found exactly but for its own relative error of some 2^-52: where that may
- * not change how the sum is rounded, it does not. */
+ * `rest` is what the rounded quotient `first` lacks, with a relative error of some 2^-52. If the
+ * largest and the smallest possible `rest` give the same sum, that is the rounded result. */
 static bool quotient(uint64_t mantissa, double power, double *made)
 {
     const double high = (double)mantissa;
@@ -35,7 +35,7 @@ int csv_inexact(const csv_reader *r, const decimal *d, const char *from, const c
     return isfinite(made->real) ? CSV_YES : CSV_ODD;
 }
 
-/* So many digits as a number; -1: one is none. */
+/* The number that `count` digits form; -1 if one of them is no digit. */
 static int32_t digits_at(const char *at, int32_t count)
 {
     int32_t made = 0;
@@ -48,7 +48,7 @@ static int32_t digits_at(const char *at, int32_t count)
     return made;
 }
 
-/* Days since 1970 of a date of the Gregorian calendar; a year begins with March. */
+/* Days from 1970 to a Gregorian date. Years start in March, so that a leap day comes last. */
 static int64_t days_of(int32_t year, int32_t month, int32_t day)
 {
     const int64_t y = year - ((month <= 2) ? 1 : 0);
@@ -56,7 +56,7 @@ static int64_t days_of(int32_t year, int32_t month, int32_t day)
     return 365 * y + y / 4 - y / 100 + y / 400 + (153 * m + 2) / 5 + day - 1 - 719468;
 }
 
-/* Seconds that a time zone is ahead of UTC; false: it is written otherwise than Z and +02:00. */
+/* Seconds by which a time zone is ahead of UTC; false unless it is empty, Z, or like +02:00. */
 static bool zone_of(const char *at, const char *to, int64_t *ahead)
 {
     int32_t hours;
@@ -74,7 +74,7 @@ static bool zone_of(const char *at, const char *to, int64_t *ahead)
     return (hours >= 0) && (hours <= 23) && (minutes >= 0) && (minutes <= 59);
 }
 
-/* A date and time as most programs write it, 2024-05-01T12:00:00.123Z, as ticks since 1970. */
+/* Convert the usual form of a date and time, 2024-05-01T12:00:00.123Z, to ticks since 1970. */
 static int date_of(const char *from, const char *to, csv_number *made)
 {
     static const int32_t DAYS[] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
