@@ -1,4 +1,4 @@
-"""Recordings of messages, from bags of ROS to logs of CAN: topics, and what all formats share."""
+"""Recordings of messages, from ROS bags to CAN logs: topics, and the interface of all formats."""
 
 from __future__ import annotations
 
@@ -16,51 +16,50 @@ from rvmon.trace.schema import Kind
 
 
 class Topic(Struct, frozen=True):
-    """A topic of a recording."""
+    """A topic of a recording, and the fields of its messages."""
 
     name: str
     type: str  # of its messages
-    # the kinds of the fields that are no messages themselves, by their path, where an array is
-    # `name[]`; empty if nobody knows
+    # leaf fields (those that are no messages themselves): kind by path, in which an array is
+    # `name[]`; empty if not known
     leaves: Mapping[str, Kind]
-    fault: str = ""  # why its messages cannot be read; empty if they can
-    # the types of the fields that are messages themselves, by their path, as far as the definition
-    # names them
+    fault: str = ""  # why its messages cannot be read; "" if they can
+    # fields that are messages themselves: type by path, as far as the definition names it
     messages: Mapping[str, str] = field(default_factory=dict)
-    # the fields whose kind is not known: nothing was seen of them
+    # the paths of leaf fields without a known kind, as no value of them was seen
     doubtful: frozenset[str] = frozenset()
-    # of the fields whose unit the recording says itself, by their path
+    # units that the recording states, by path
     units: Mapping[str, str] = field(default_factory=dict)
-    # of the definition on fields, by path
+    # comments on fields in the definition, by path
     comments: Mapping[str, str] = field(default_factory=dict)
 
 
 Message = tuple[str, int, Any]
-"""Topic, ticks at which it was recorded, content: an object with attributes, or a mapping."""
+"""A message: topic, ticks of its log stamp, content (an object with attributes, or a mapping)."""
 
 
 class Messages(ABC):
-    """An open recording."""
+    """An open recording of messages."""
 
     topics: Mapping[str, Topic]  # by name
-    end: int | None = None  # the tick of the last message of all; `None` if nobody knows
-    count: int = 0  # of all messages; 0 if nobody knows
-    outages: Sequence[Outage] = ()  # its outages, in order; `names` are of topics
+    end: int | None = None  # the tick at which the recording ends; `None` if not known
+    count: int = 0  # the number of all messages; 0 if not known
+    outages: Sequence[Outage] = ()  # its outages, in order; their `names` are topics
 
     @abstractmethod
     def read(self, topics: Collection[str]) -> Iterator[Message]:
-        """The messages of these topics, by time.
+        """Yield the messages of these topics in order of log stamps.
 
         Raises:
-            TraceError: one cannot be read.
+            TraceError: a message cannot be read.
         """
 
-    def close(self) -> None:  # noqa: B027 - mostly nothing is open
+    def close(self) -> None:  # noqa: B027 - most formats leave nothing open
         """Close the files."""
 
 
 def by_name(topics: Iterable[Topic]) -> dict[str, Topic]:
-    """Topics by name; one that comes with two types cannot be read."""
+    """Topics by name; a topic with messages of two types gets a fault."""
     found: dict[str, Topic] = {}
     for topic in topics:
         known = found.setdefault(topic.name, topic)
@@ -74,14 +73,17 @@ def by_name(topics: Iterable[Topic]) -> dict[str, Topic]:
 def errors_as_damage(
     form: str, fix: str = "is it cut off? Copy it again", fixes: Mapping[str, str] | None = None
 ) -> Iterator[None]:
-    """Turns whatever a library raises into an error of the file: damage shows anywhere.
+    """Turn every exception of a library into a `TraceError`, as a damaged file may raise any.
 
-    `fix` is the advice, and `fixes` the same by a word of the error that says more.
+    Args:
+        form: the name of the format, for the message.
+        fix: the advice in the message.
+        fixes: more specific advice, by a text that the exception contains.
     """
     try:
         yield
     except (RvmonError, MemoryError, GeneratorExit):
         raise
-    except Exception as error:  # noqa: BLE001 - each library has errors of its own
+    except Exception as error:  # noqa: BLE001 - each library has its own exceptions
         remedy = next((own for sign, own in (fixes or {}).items() if sign in str(error)), fix)
         raise TraceError(f"cannot be read as {form} ({first_line(error)}): {remedy}") from None

@@ -1,4 +1,4 @@
-"""Topics whose messages are rows of columns, as logs have them that are read topic by topic."""
+"""Topics stored as columns, whose messages are rows, for logs that are read topic by topic."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from rvmon.trace.sample import Outage
 from rvmon.trace.schema import Kind
 
 Columns = Mapping[str, Any]
-"""Arrays by the path of the field: of one value a row, or of several; masked where it has none."""
+"""Arrays by path of the field: [n] or [n, k] for a field of k values; masked: no value."""
 
 
 class ColumnTopic(Struct, frozen=True):
-    """A topic and what is in it."""
+    """A topic and its columns."""
 
     topic: Topic
     count: int  # of its rows
-    # gives their stamps (int64, ticks), in any order, and their columns
+    # reads the stamps (int64[n] ticks, in any order) and the columns
     load: Callable[[], tuple[Any, Columns]]
 
 
 class ColumnMessages(Messages):
-    """An open recording of such topics; `close` closes the file."""
+    """An open recording of topics stored as columns; `close` closes the file."""
 
     def __init__(
         self,
@@ -37,7 +37,7 @@ class ColumnMessages(Messages):
         outages: Sequence[Outage] = (),
         close: Callable[[], object] = lambda: None,
     ) -> None:
-        # Names that differ in characters that are none of ours are the same here.
+        # Names that differ only in characters that `path_of` replaces became equal.
         names = distinct([topic.topic.name for topic in topics])
         self._topics = dict(zip(names, topics, strict=True))
         self.topics = {name: replace(one.topic, name=name) for name, one in self._topics.items()}
@@ -51,7 +51,7 @@ class ColumnMessages(Messages):
         self._close()
 
     def read(self, topics: Collection[str]) -> Iterator[Message]:
-        """The rows of these topics by time, those of one instant as the topics are listed."""
+        """Yield the rows of these topics by time; at one instant, in the order of the topics."""
         names = [name for name in self._topics if name in topics]
         loaded = [self._topics[name].load() for name in names]
         if not loaded:
@@ -68,9 +68,9 @@ class ColumnMessages(Messages):
 
 
 class LateColumn:
-    """A column that is read when it is first asked for.
+    """A column that is read from the file on demand.
 
-    `read` gives its values, and where they are invalid, if somewhere.
+    `read` gives its values, and a list of flags for the invalid ones, or `None` if all are valid.
     """
 
     def __init__(
@@ -80,7 +80,7 @@ class LateColumn:
         self.dtype, self.ndim, self.unit = dtype, ndim, unit
 
     def tolist(self) -> list[Any]:
-        """Its values, bytes as texts; `None` where the file says that one is invalid."""
+        """Read the values, with bytes as texts and `None` for invalid ones."""
         with errors_as_damage(self._form):
             values, invalid = self._read()
         cells: list[Any] = values.tolist()
@@ -95,7 +95,7 @@ class LateColumn:
 
 
 class _Row(Mapping[str, Any]):
-    """A row as the content of a message; columns become lists when they are first asked for."""
+    """A row as the content of a message; a column is turned into a list at its first use."""
 
     __slots__ = ("_place", "_tree")
 
@@ -122,7 +122,7 @@ class _Row(Mapping[str, Any]):
 
 
 def _tree(columns: Columns) -> dict[str, Any]:
-    """Columns by the steps of their paths; `esc[0].rpm` is in the element 0 of `esc`."""
+    """Nest columns by the steps of their paths: `esc[0].rpm` is in element 0 of `esc`."""
     tree: dict[str, Any] = {}
     for path, column in columns.items():
         found = re.findall(r"[^.\[\]]+", path)
@@ -135,7 +135,7 @@ def _tree(columns: Columns) -> dict[str, Any]:
 
 
 def leaves_of(columns: Columns) -> dict[str, Kind]:
-    """The fields of columns with their kinds; those of several values a row are arrays."""
+    """The fields of columns with their kinds; columns of several values per row are arrays."""
     kinds = {"b": Kind.BOOL, "i": Kind.INT, "u": Kind.INT, "f": Kind.REAL}
     return {
         _leaf(path, column): kinds.get(column.dtype.kind, Kind.LABEL)
@@ -144,7 +144,7 @@ def leaves_of(columns: Columns) -> dict[str, Kind]:
 
 
 def units_of(columns: Mapping[str, LateColumn]) -> dict[str, str]:
-    """The units of fields of columns that say one."""
+    """The units of fields, for the columns that state one."""
     return {_leaf(path, column): column.unit for path, column in columns.items() if column.unit}
 
 
@@ -153,7 +153,7 @@ def _leaf(path: str, column: Any) -> str:
 
 
 def joined(columns: Mapping[str, Any]) -> dict[str, Any]:
-    """Columns with the elements of an array, `q[0]` and `q[1]`, as one."""
+    """Join the columns of the elements of an array, `q[0]` and `q[1]`, to one column."""
     found: dict[str, Any] = {}
     arrays: dict[str, list[Any]] = {}
     for path, column in columns.items():
@@ -166,7 +166,7 @@ def joined(columns: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def path_of(name: str) -> str:
-    """A name of a channel as the path of a field.
+    """The name of a channel, turned into the path of a field.
 
     >>> path_of("Engine.Speed [rpm]"), path_of("2nd gear")
     ('Engine_Speed_rpm', '_2nd_gear')
@@ -176,7 +176,7 @@ def path_of(name: str) -> str:
 
 
 def distinct(names: Sequence[str]) -> list[str]:
-    """Names of which those that were there before end in a number.
+    """Make names distinct: one that was there before gets a number.
 
     >>> distinct(["a", "b", "a"])
     ['a', 'b', 'a_2']

@@ -1,19 +1,19 @@
-"""The meaning of fields of messages: facts about the packages that many robots use.
+"""The meaning of message fields, from tables about the packages that many robots use.
 
-The tables are in `meanings`, a file per package: its messages in brackets, below each of them a
-field a line, what it is, and words that people use for it. What a field is:
+The folder `meanings` has a file per package: each message type in brackets, then one line per
+field with its name, an entry for its meaning, and words that people use for it. The entries:
 
-    m/s       measured in this unit; of a field that is a message: all that is inside
-    rad|m     in one of these: of a joint that turns, or slides
-    ~deg      in another scale of this unit
+    m/s       measured in this unit; for a field that is a message, all fields in it
+    rad|m     measured in one of these units, as a joint may turn or slide
+    ~deg      measured in another scale of this unit
     1         a plain number, such as a ratio
-    #         what counts or stands for something: a code, a text, a truth value
+    #         a count or code, a text, a truth value
     q         a part of a quaternion
-    ?         decided by whoever sends it
+    ?         decided by the sender
     -         of no interest: covariances, gains, bytes
-    @p/Type   a message, whose fields are listed there
+    @p/Type   a message of this type, whose fields are listed there
 
-`xyz` among the words says that the elements of an array are along these axes.
+The word `xyz` means that the elements of an array are along these axes.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from rvmon.units import PLAIN, Unit, parse_unit
 
 
 class Sort(Enum):
-    """The sorts of fields."""
+    """The sorts of fields, by their entry in the tables."""
 
     MEASURED = "measured"
     CODE = "#"
@@ -47,28 +47,28 @@ class Sort(Enum):
 class Meaning(Struct, frozen=True):
     """The known meaning of a field."""
 
-    sort: Sort  # of the field
-    # in one of which it is measured; empty if it is not, or nobody knows
+    sort: Sort
+    # the units of which it has one; empty if it is not measured or its unit is not known
     units: tuple[Unit, ...] = ()
     is_scaled: bool = False  # whether it is in another scale of the unit
-    words: tuple[str, ...] = ()  # people's words for it
-    is_prose: bool = False  # whether a comment says it, which may mean something else
+    words: tuple[str, ...] = ()  # words that people use for it
+    is_prose: bool = False  # whether it comes from a comment, which may mean something else
 
 
-UNKNOWN = Meaning(Sort.OPEN)  # the meaning of fields that stand in no table
+UNKNOWN = Meaning(Sort.OPEN)  # the meaning of fields that are in no table
 
 _OF_OTHERS = Meaning(Sort.OPEN, is_scaled=True)
-"""The meaning of a field whose unit, as the recording states it, is not known here."""
+"""The meaning of a field for which the recording states a unit that is not known here."""
 
 
 def meaning_of(path: str, topic: Topic) -> Meaning:
-    """The meaning of a field of the messages of a topic.
+    """The meaning of a field of a topic's messages: from the tables, else from the recording.
 
     >>> one = meaning_of("twist.linear.x", Topic("/v", "geometry_msgs/msg/TwistStamped", {}))
     >>> one.units[0].symbol, one.words
     ('m/s', ('velocity', 'speed'))
     """
-    # Names of elements may have dots.
+    # Names of elements may have dots, which would be taken for steps of the path.
     plain = re.sub(r"\[[^\[\]]*\]", "[]", path)
     steps = plain.split(".")
     type_name = plain_type(topic.type)
@@ -77,7 +77,7 @@ def meaning_of(path: str, topic: Topic) -> Meaning:
         entry = _table(type_name).get(step.removesuffix("[]"), "?")
         if not entry.startswith("@"):
             inner = _read(entry)
-            # What is said of a vector is said of all that is inside it.
+            # The meaning of a message, such as a vector, is that of all fields in it.
             found = inner if found.sort is Sort.OPEN else found
         way = ".".join(steps[:place])
         if found.sort is Sort.OPEN:
@@ -88,12 +88,12 @@ def meaning_of(path: str, topic: Topic) -> Meaning:
 
 
 def is_listed(type_name: str) -> bool:
-    """Whether the fields of a type of messages are in the tables."""
+    """Whether the tables list the fields of a message type."""
     return bool(_table(plain_type(type_name)))
 
 
 def plain_type(type_name: str) -> str:
-    """A type as the tables have it.
+    """The name of a type in the form of the tables.
 
     >>> plain_type("sensor_msgs/msg/Imu"), plain_type("sensor_msgs/Imu")
     ('sensor_msgs/Imu', 'sensor_msgs/Imu')
@@ -102,7 +102,7 @@ def plain_type(type_name: str) -> str:
 
 
 def _told(path: str, topic: Topic) -> Meaning:
-    """The meaning that a recording states for a field, itself or by a comment."""
+    """The meaning that a recording states for a field, by a unit or by a comment."""
     said = topic.units.get(path, "")
     unit = "1" if said in ("1", "-") else spoken_unit(said)
     is_number = topic.leaves.get(path) in (Kind.REAL, Kind.INT)
@@ -125,7 +125,7 @@ def _read(entry: str) -> Meaning:
 
 
 def _table(type_name: str) -> Mapping[str, str]:
-    """The entry of each field of a type; empty if it is in no table."""
+    """The entry of each field of a type; empty if the type is in no table."""
     package, _, name = type_name.partition("/")
     return _package(package).get(name, {}) if name else {}
 
@@ -147,7 +147,7 @@ def _package(name: str) -> Mapping[str, Mapping[str, str]]:
 
 
 _ALIKE = frozenset({"+", "-", "min", "max", "hypot", "<", "<=", ">", ">=", "==", "!="})
-"""Operations whose arguments are in one unit."""
+"""Operations whose arguments must be in the same unit."""
 
 _TRUTHS = frozenset({"<", "<=", ">", ">=", "==", "!=", "and", "or", "xor", "not", "any", "all"})
 
@@ -157,7 +157,11 @@ _ANGLE = Meaning(Sort.MEASURED, (parse_unit("rad"),))
 
 
 def _measured(term: Term, topic: Topic) -> Meaning:
-    """In which units a value may be; without any if nobody knows, or if it is a constant."""
+    """The meaning of a term's value; without units if they are not known, or for a constant.
+
+    Raises:
+        TraceError: values of different dimensions are added or compared.
+    """
     match term:
         case Constant():
             return UNKNOWN
@@ -176,16 +180,16 @@ def _measured(term: Term, topic: Topic) -> Meaning:
 
 
 def _combined(sign: str, args: tuple[Term, ...], inner: list[Meaning]) -> Meaning:
-    """The units of a result, where those of all arguments but constants are known."""
+    """The meaning of a result, known only if the units of all arguments but constants are."""
     pairs = list(zip(args, inner, strict=True))
     known = [own for own in inner if own.units]
     if any(not own.units and not isinstance(arg, Constant) for arg, own in pairs):
         return UNKNOWN
     if not known or (sign in ("*", "/") and len(known) == 2) or sign == "sqrt":
-        return UNKNOWN  # products of fields are rare: that nothing is known of them does no harm
+        return UNKNOWN  # products of fields are rare, so their units need not be found out
     if sign == "/" and not inner[0].units:
         return UNKNOWN
-    # A number that is not a field may change the scale: thousandths of metres become metres.
+    # Multiplying by a constant may change the scale: millimetres become metres.
     return replace(known[0], is_scaled=known[0].is_scaled or sign in ("*", "/"))
 
 
@@ -203,7 +207,11 @@ def _expect_alike(term: Applied, inner: list[Meaning], topic: Topic) -> None:
 
 
 def expect_units(name: str, bound: Bound, schema: Schema, topic: Topic) -> None:
-    """See that values that feed a name are in its unit, as far as the messages say it."""
+    """Check that the values that feed a name are in its unit, as far as the messages tell.
+
+    Raises:
+        TraceError: a value has another dimension, or another scale that is not converted.
+    """
     if bound.value is not None:
         _expect(name, bound.value, schema.units.get(name, ""), bound.unit, topic)
     for field, term in bound.fields.items():
@@ -215,7 +223,7 @@ def _expect(name: str, term: Term, declared: str, given: str, topic: Topic) -> N
     found = _measured(term, topic)
     is_prose = found.is_prose
     if not found.units or not declared or (is_prose and given):
-        return  # who writes the unit of a field has read what its comment means
+        return  # a unit in the binding takes precedence over one guessed from a comment
     target = parse_unit(given or declared)
     alike = [unit for unit in found.units if unit.dimension == target.dimension]
     where = f"topic {topic.name} ({topic.type})" if topic.type else f"topic {topic.name}"
@@ -245,7 +253,7 @@ def _such(target: Unit, topic: Topic) -> str:
 
 
 def _written(units: Iterable[Unit]) -> str:
-    """Units as a person reads them.
+    """Units as text for a message.
 
     >>> _written([parse_unit("rad"), PLAIN])
     'in [rad] or a plain number'

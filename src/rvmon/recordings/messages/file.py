@@ -1,4 +1,4 @@
-"""A recording of messages on disk; the names in its first messages: frames, elements of arrays."""
+"""Files of messages: opens them by format, and finds names (frames, array elements) in them."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ from rvmon.trace.time import whole_ticks
 
 
 def open_messages(path: Path, form: str, schema: Schema) -> Messages:
-    """Open a recording.
+    """Open a recording of messages.
 
     Raises:
-        RvmonError: what reads it is not installed.
-        TraceError: it cannot be read.
-        OSError: it cannot be opened.
+        RvmonError: the package that reads the format is not installed.
+        TraceError: the file cannot be read.
+        OSError: the file cannot be opened.
     """
     definitions = schema.binding.definitions
     with _sizes():
@@ -77,7 +77,7 @@ def open_messages(path: Path, form: str, schema: Schema) -> Messages:
 
 @contextmanager
 def _sizes() -> Iterator[None]:
-    """Messages take little memory, unless what the file says of their sizes is wrong."""
+    """Report a `MemoryError` as a `TraceError`: messages are small, unless a size is damaged."""
     try:
         yield
     except MemoryError:
@@ -93,27 +93,27 @@ def _close(ready: list[Messages]) -> None:
 
 
 class MessageFile:
-    """A recording of messages, looked at."""
+    """A recording of messages on disk, with its topics matched to the schema."""
 
     def __init__(self, path: str, form: str, schema: Schema) -> None:
         self._place = path, form
         self._schema = schema
         source = self._opened()
-        # To open it anew takes as long as to read a few hundred messages.
+        # Kept open for the first reading: opening it again takes as long as a few hundred messages.
         self._ready = [source]
         weakref.finalize(self, _close, self._ready)
         self.topics = source.topics  # by name
-        # also the topics and fields that feed nothing
+        # `unread`: the topics and fields that feed no declared name
         self._bounds, self.unread = matched(schema, source.topics)
-        self.count = source.count  # of its messages; 0 if nobody knows
-        # its last instant; `None` where another clock counts
+        self.count = source.count  # of all messages; 0 if not known
+        # the last instant by log stamps, ticks; `None` if not known, or if header stamps are used
         self.end = None if source.end is None else whole_ticks(source.end)
         clocks = {bound.clock or schema.binding.clock for bound in self._bounds.values()}
         if Clock.HEADER in clocks:
             self.end = None
-        self.names = frozenset(self._bounds)  # declared, that have a topic
-        self.skew = Skew()  # of the clocks of those who sent what was read last
-        self.outages = tuple(self._of_names(source.outages))  # in order
+        self.names = frozenset(self._bounds)  # the declared names that have a topic
+        self.skew = Skew()  # differences between header and log stamps in the last reading
+        self.outages = tuple(self._of_names(source.outages))  # in order; `names` are declared names
         if source.outages and Clock.HEADER in clocks:
             raise TraceError(
                 f"{source.outages[0].why}; its instant by the stamps of headers is not known: "
@@ -121,7 +121,7 @@ class MessageFile:
             )
 
     def _of_names(self, outages: Sequence[Outage]) -> Iterator[Outage]:
-        """Outages of topics as those of the names that they feed."""
+        """Turn outages of topics into outages of the declared names that they feed."""
         for outage in outages:
             if outage.names is None:
                 yield outage
@@ -139,12 +139,16 @@ class MessageFile:
         return source
 
     def read(self, topics: Collection[str]) -> Iterator[Message]:
-        """The messages of these topics, as they were recorded."""
+        """Yield the messages of these topics in order of log stamps."""
         with closing(self._opened()) as source, _sizes():
             yield from source.read(topics)
 
     def rows(self, *, ordered: bool) -> Iterator[Row]:
-        """The rows of its messages; see `message_rows`."""
+        """Yield the messages as rows; see `message_rows`.
+
+        Raises:
+            TraceError: no topic feeds a declared name, or a message cannot be read.
+        """
         if not self._bounds:
             raise TraceError("holds no topic that is read")
         with closing(self._ready.pop() if self._ready else self._opened()) as source, _sizes():
@@ -152,27 +156,27 @@ class MessageFile:
             yield from message_rows(source, self._bounds, self._schema, skew, ordered=ordered)
 
 
-MOST = 50_000  # messages that are looked at
+MOST = 50_000  # the most messages that are examined
 
 _FIRST = 3
 _FIRST_OF_MANY = 300
-"""Messages of each topic whose names are read; many nodes say something of themselves on one."""
+"""Messages of a topic that are searched for names; more if it has keys, as many nodes share it."""
 
 _FRAMES = ("header.frame_id", "child_frame_id")
 
 
 class Looked(Struct, frozen=True):
-    """The names in the first messages of a topic."""
+    """The names found in the first messages of a topic."""
 
-    frames: frozenset[str] = frozenset()  # in their headers
-    # by the path of an array of names those in it
+    frames: frozenset[str] = frozenset()  # the frames in headers
+    # by the path of an array of names, the names in it
     joints: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     # the first value of each key, by its path: `status[motor].values[Load].value`
     entries: Mapping[str, str] = field(default_factory=dict)
 
 
 def names_in(source: MessageFile) -> Mapping[str, Looked]:
-    """The names in the first messages of each topic: frames, elements of arrays, keys."""
+    """Find the names in the first messages of each topic: frames, array elements, keys."""
     wanted: dict[str, list[str]] = {}
     keys: dict[str, list[str]] = {}
     for known in source.topics.values():
@@ -183,7 +187,7 @@ def names_in(source: MessageFile) -> Mapping[str, Looked]:
     found: dict[str, dict[str, list[str]]] = defaultdict(lambda: defaultdict(list))
     entries: dict[str, dict[str, str]] = defaultdict(dict)
     counts: dict[str, int] = defaultdict(int)
-    with suppress(TraceError):  # what cannot be read is told by who reads it all
+    with suppress(TraceError):  # reading the whole recording reports the error
         for number, (topic, _, content) in enumerate(source.read(set(reading))):
             if number == MOST or not reading:
                 break
@@ -210,7 +214,10 @@ def names_in(source: MessageFile) -> Mapping[str, Looked]:
 
 
 def _entries(steps: Sequence[str], content: Any) -> Iterator[tuple[str, str]]:
-    """The path and the value of each key: of arrays in elements that have a name, too."""
+    """Yield the path and value of each key, also in arrays inside of named elements.
+
+    `steps`: the path of the keys, split at `[].`.
+    """
     found, is_last = part_of(content, steps[0]), len(steps) == 2
     for element in found if isinstance(found, list | tuple) else ():
         [name] = _texts("key" if is_last else "name", element) or [""]

@@ -1,4 +1,4 @@
-"""Measurements of vehicles (MDF 4, `.mf4`); needs asammdf, the extra `mdf`."""
+"""Reader of vehicle measurements (MDF 4, `.mf4`); needs asammdf, the extra `mdf`."""
 
 from __future__ import annotations
 
@@ -22,14 +22,20 @@ from rvmon.trace.schema import Stamps
 _STAMPS = Stamps("its time", "s", is_stated=True)
 
 _IN_TIME = 1  # the mark of a master channel that counts seconds
-_FRAMES = "CAN_DataFrame"  # the channel of a group that holds frames as they were on the bus
+_FRAMES = "CAN_DataFrame"  # the channel of a group that holds raw CAN frames
 
 _LAST_STANDARD = 0x7FF
 _IDENTIFIER = 0x1FFFFFFF
 
 
 def open_measurement(path: Path) -> Any:
-    """Open a file with the library."""
+    """Open a file with the library.
+
+    Raises:
+        TraceError: the file is no MDF file, or damaged.
+        RvmonError: asammdf is not installed.
+        OSError: the file cannot be opened.
+    """
     with needed("MDF", "asammdf"):
         from asammdf import MDF
     with open(path, "rb") as file:
@@ -41,10 +47,9 @@ def open_measurement(path: Path) -> Any:
 
 
 def mdf_messages(path: Path) -> column_topics.ColumnMessages | None:
-    """Open a measurement; `None` if it holds frames of CAN and no signals.
+    """Open a measurement; `None` if it holds only raw CAN frames.
 
-    Stamps are those of the file, which count from its start. Errors are those of
-    `open_measurement`.
+    Stamps count from the start of the measurement. Errors are those of `open_measurement`.
     """
     file = open_measurement(path)
     with errors_as_damage("MDF"):
@@ -67,7 +72,7 @@ def _holds_frames(group: Any) -> bool:
 
 
 def mdf_frames(path: Path) -> Iterator[tuple[int, tuple[int, bool], int, bytes]]:
-    """Ticks, identifier, channel and data of the frames of CAN in a measurement, by time.
+    """Yield ticks, identifier, channel and data of each CAN frame in a measurement, by time.
 
     Errors are those of `open_measurement`.
     """
@@ -103,7 +108,7 @@ def mdf_frames(path: Path) -> Iterator[tuple[int, tuple[int, bool], int, bytes]]
 
 @contextmanager
 def _quietly_freed() -> Iterator[None]:
-    """Silence the library: it closes a file that it could not open again when it is freed."""
+    """Keep the library's destructor from failing: it closes a file again that it could not open."""
     try:
         yield
     except Exception as error:
@@ -136,11 +141,8 @@ def _times(file: Any, group: int) -> Any:
 
 
 def _signal(file: Any, group: int, index: int, **options: Any) -> Any:
-    """A channel, with its invalid values, too, which the library would leave out.
-
-    It prints all about one that it cannot read.
-    """
-    with redirect_stdout(StringIO()):
+    """Read a channel with its invalid values, which the library leaves out by default."""
+    with redirect_stdout(StringIO()):  # the library prints what it knows of an unreadable channel
         return file.get(group=group, index=index, ignore_invalidation_bits=True, **options)
 
 
@@ -153,7 +155,7 @@ def _channel(file: Any, group: int, index: int) -> tuple[Any, Any]:
 
 
 def _topic(file: Any, name: str, group: int) -> column_topics.ColumnTopic:
-    """A group of channels with one clock."""
+    """The topic of a group of channels, which share one clock."""
     counted = file.groups[group].channel_group.cycles_nr
     kind = file.groups[group].channel_group.acq_source
     type_name = kind.name if kind is not None and kind.name else "MDF"
