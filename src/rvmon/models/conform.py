@@ -105,13 +105,13 @@ def conform(
     most = len(network.automata) + 1
     chain, meter = _chain_of(actions, end, tolerance, most), Meter(budget, None)
     watcher = _follower(fine, labels, chain, most)
-    over = watcher.add_location()
+    over = watcher.add_location()  # the end, after the last place
     bound = ex.ClockCompare(watcher.clock, ex.ClockOp.GE, ex.Constant(max(0, chain[-1].earliest)))
     watcher.add_edge(over - 1, over, ex.TRUE, [bound], watches=False)
     spans = seek(watcher.network(), Sought(Seek.GOAL, ex.FALSE), meter).spans
     if over in spans:
         return Conformance(len(actions), None)
-    reached = max(spans, default=0)
+    reached = max(spans, default=0)  # places are in order of progress
     place = chain[reached]
     if meter.stopped:
         return Conformance(place.explained, None, meter.stopped)

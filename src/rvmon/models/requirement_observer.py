@@ -44,11 +44,11 @@ _LOST = -2  # in place of a location: the monitor changes at every instant, and 
 class Phase(Enum):
     """The phases of the watcher between two moves."""
 
-    START = "the run has just begun: both without an attempt and with one, if one begins there"
+    START = "the run has just started: without an attempt, or with the one that starts here"
     IDLE = "no attempt is followed, and the trigger does not hold"
     READY = "no attempt is followed, and the trigger holds"
-    FRESH = "an action has just been stepped, no time has passed since"
-    HELD = "time passes, nothing changes"
+    FRESH = "the monitor has just stepped at an action; no time has passed since"
+    HELD = "time passes and nothing changes"
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,6 +127,7 @@ class Observed:
         """The clock that the watcher resets in each step."""
         now = Labelling(signals, self._watcher.has)
         between = Labelling(signals, lambda _name: ex.FALSE)
+        # the trigger at an action, and between actions
         self._triggers = ex.FALSE if trigger is None or bound else now.expression(trigger)
         self._lasting = ex.FALSE if trigger is None or bound else between.expression(trigger)
         propositions = [now.expression(proposition) for proposition in alphabet.propositions]
@@ -142,9 +143,9 @@ class Observed:
         if self._is_ready or (bound is not None and bound.bound is Bound.START):
             letter = self._tables.class_of(lambda expression: evaluator(expression)(*at_start))
             edge = self._tables.edge(automaton.initial, (), letter)
-            assert edge is not None, "every letter may begin a run"
+            assert edge is not None, "every letter may start a run"
             self._first, _ = self._fresh(edge, ())
-        for site in self._waiting:
+        for site in self._waiting:  # grows meanwhile
             self._expand(site)
         self.network = self._watcher.network()
         # An attempt is followed, or has ended as the name says.

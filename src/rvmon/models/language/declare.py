@@ -153,6 +153,7 @@ def _warn_of_range(variable: Variable, item: syntax.Named, findings: Findings) -
 
 def _symbol(item: syntax.Named, scope: sc.Scope, parts: Parts, resolver: Resolver) -> sc.Symbol:
     if isinstance(item, syntax.FunctionText):
+        # A function sees itself and what is declared before it.
         seen = sc.Scope(scope.parent, scope.prefix, dict(scope.symbols), dict(scope.places))
         seen.symbols[item.name] = symbol = sc.FunctionSymbol(item, seen)
         return symbol

@@ -102,6 +102,7 @@ def _priorities(parts: Parts, automata: Sequence[int]) -> nta.Priorities | None:
     levels, above = parts.levels, 1 + max(automata)
     if len({*levels.values()}) <= 1 and above == 1:
         return None
+    # Multiples of `above` outweigh the ranks of automata, so that channels decide first.
     default = above * levels.get(None, 0)
     channels = (above * levels.get(c, levels.get(None, 0)) for c in range(len(parts.channels)))
     return nta.Priorities(tuple(automata), default, tuple(channels))

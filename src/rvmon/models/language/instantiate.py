@@ -300,7 +300,7 @@ def _edges(
                 raise model_error("TA011", "a clock guard on an urgent channel", written.span, fix)
         updates = updates_of(written.updates, inner, resolver)
         weight = _weight(written, inner, resolver)
-        if weight == 0:
+        if weight == 0:  # a branch that is never taken
             continue
         parts.are_split |= len(guards) > 1
         for guard in guards:

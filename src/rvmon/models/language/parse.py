@@ -152,6 +152,8 @@ MOST = 20  # the search for mistakes stops after so many, since each one needs a
 LONGEST = 100_000
 """Of a longer text only the first mistake is reported, since each further one needs a parse."""
 
+# At the start of a line, firm words always start a part; loose ones only outside brackets, since
+# they may also occur inside a part.
 _FIRM = "automaton|(?:(?:urgent|committed)[ \t]+)?location|edge|start|query|signal|unit|system"
 _LOOSE = "clock|broadcast|urgent|chan|int|bool|const|meta|struct|typedef|void"
 _DECLARED = (

@@ -263,6 +263,7 @@ class Resolver:
         match clocks:
             case []:
                 return None
+            # A clock alone on its side may be compared with any number.
             case [(sign, clock)] if any(
                 part in (written.left, written.right) for _, part, its in named if its is not None
             ):
@@ -270,10 +271,12 @@ class Resolver:
                 bound = operations.clock_number(bound)
                 turned = op if sign > 0 else operations.MIRRORED[op]
                 return operations.compare_clock(clock, turned, bound, span)
+        # Otherwise the terms without clocks must be constant: they are moved to the right side.
         others = ((sign, part) for sign, part, clock in named if clock is None)
         number = -sum(sign * self.constant(part, scope) for sign, part in others)
         match clocks:
             case [(sign, clock)]:
+                # -x < n is x > -n
                 turned = op if sign > 0 else operations.MIRRORED[op]
                 return operations.compare_clock(clock, turned, ex.Constant(sign * number), span)
             case [(-1, second), (1, first)] if first != second:

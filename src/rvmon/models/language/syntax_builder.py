@@ -240,6 +240,7 @@ class SyntaxBuilder(QueryBuilder):
         if not all(isinstance(share, syntax.Decimal | syntax.Number) for share in shares):
             fix = "write whole numbers as a share, such as 1:20"
             raise model_error("TA017", "this is no rate", span, fix)
+        # A share of decimals becomes one of integers.
         one, other = (Fraction(str(share.value)) for share in shares)
         rate = one / other if other else Fraction(0)
         return syntax.Number(rate.numerator, span), syntax.Number(rate.denominator, span)

@@ -40,7 +40,7 @@ def bits_of(number: float) -> int:
     >>> number_of(bits_of(-2.5)), bits_of(-0.0)
     (-2.5, 0)
     """
-    (bits,) = struct.unpack("<q", struct.pack("<d", number + 0.0))
+    (bits,) = struct.unpack("<q", struct.pack("<d", number + 0.0))  # + 0.0 turns −0.0 into 0.0
     return int(bits)
 
 

@@ -12,7 +12,9 @@ from rvmon.models.network import expressions as ex
 from rvmon.models.network.evaluate import chained
 
 _BELOW, _ABOVE = (ex.ClockOp.LT, ex.ClockOp.LE), (ex.ClockOp.GE, ex.ClockOp.GT)
+# The negation of < is >=, and so on.
 _NEGATED_CLOCK = dict(zip(_BELOW + _ABOVE, _ABOVE + _BELOW, strict=True))
+# `PathOp` lists each operator before its dual.
 _DUALS = [*zip([*ex.PathOp][::2], [*ex.PathOp][1::2], strict=True)]
 _NEGATED_PATH = dict(_DUALS) | {other: one for one, other in _DUALS}
 

@@ -190,7 +190,7 @@ class Timing:
     def waits(self) -> list[tuple[float, float, float]]:
         """The least and greatest wait before each instant, and its earliest time."""
         found, live = [], self._live()
-        later = _together(live[-1], ())
+        later = _together(live[-1], ())  # what the constraints after `now` imply
         for now, before in reversed([*enumerate(self._forward(()), start=1)]):
             whole = _together(before.instants, (before, later))
             found.append((-whole.of(now, now - 1), whole.of(now - 1, now), -whole.of(now, 0)))

@@ -65,7 +65,7 @@ class Rules:
         return int(self._made(expression, evaluator)(now.locations, now.values))
 
     def _made(self, what: T, make: Callable[[T], Callable[..., Any]]) -> Callable[..., Any]:
-        known = self._ready.get(id(what))
+        known = self._ready.get(id(what))  # `what` is kept, so that its id stays unique
         if known is None:
             known = self._ready[id(what)] = (what, make(what))
         return known[1]

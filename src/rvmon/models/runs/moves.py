@@ -168,6 +168,7 @@ class Space:
         if any(kind is not ex.LocationKind.NORMAL for kind in self._kinds(state)):
             return True
         tried = _Tried(state, self._leaving)
+        # All channels of an array are of one kind, so the first tells.
         return any(
             self.network.channels[edge.channels[0]].urgent
             and tried.is_able(edge)
@@ -202,6 +203,7 @@ class Space:
             groups: dict[int, list[ReadyEdge | None]] = {}
             for other in tried.receivers(sender):
                 groups.setdefault(other.automaton, []).append(other)
+            # An automaton is left out only if clocks can disable all its receiving edges.
             for group in groups.values():
                 if all(edge is not None and edge.edge.guard.clocks for edge in group):
                     group.append(None)

@@ -194,6 +194,7 @@ def _tested(query: Query, chance: Chance, trial: Callable[[], bool], runs: _Runs
     level = chance.level
     margin = min(MARGIN, level / 2, (1 - level) / 2)
     above, below = level + margin, level - margin
+    # The evidence is the log-likelihood ratio of `below` to `above`.
     hit, miss = log(below) - log(above), log1p(-below) - log1p(-above)
     limit = log((1 - ERROR) / ERROR)
     evidence, met = 0.0, list[bool]()

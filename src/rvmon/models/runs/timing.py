@@ -49,6 +49,7 @@ def timing_of(steps: Sequence[TimedStep], start: runs.Zone | None = None) -> run
     found: list[list[runs.Constraint]] = [[] for _ in range(len(steps) + 1)]
     reset_at: dict[int, tuple[int, float]] = {}
     if start is not None:
+        # for each clock, the instant before the start at which it was 0
         born = [0, *range(len(steps) + 1, size)]
         reset_at = {clock: (born[clock], 0.0) for clock in range(1, dim)}
         for x, y in product(range(dim), repeat=2):
