@@ -254,7 +254,7 @@ def _add_closing_options(parser: Parser) -> None:
     """Declare the options of `close`: when it gives up, and where the suite goes."""
     parser.option("--tests N", "play at most N tests (400)", type=positive, default=400)
     parser.option(
-        "--seconds TIME", f"begin no test after TIME ({TIME_FORMS}; default: any)", type=span_s
+        "--seconds TIME", f"start no test after TIME ({TIME_FORMS}; default: no limit)", type=span_s
     )
     parser.option(
         "--margin N",
@@ -265,7 +265,7 @@ def _add_closing_options(parser: Parser) -> None:
     parser.option(
         "--mutants N",
         "also keep a smallest set of tests that kills further mutants, out of N mutants of the "
-        "code, and show how many of these and of the held-out mutants each selection of tests "
+        "code; show how many of these mutants, and of the held-out ones, each selection of tests "
         "kills",
         type=positive,
     )
@@ -282,7 +282,7 @@ def _add_replay_options(parser: Parser) -> None:
 def _add_shrink_options(parser: Parser) -> None:
     """Declare the options of `shrink`: which failure has to stay, and where the test goes."""
     parser.option(
-        "--requirement ID", "the requirement that has to fail (default: the first that does)"
+        "--requirement ID", "the requirement that has to fail (default: the first that fails)"
     )
     _add_timeout(parser)
     parser.option("--out DIR", "write it into this folder, with a pytest test that replays it")
@@ -304,7 +304,7 @@ def _add_mutate_options(parser: Parser) -> None:
         choices=("code", "spec", "both"),
         default="both",
     )
-    parser.option("--only TEXT", "only mutants whose name contains this", default="")
+    parser.option("--only TEXT", "only mutants whose name contains TEXT", default="")
     parser.option("--all", "play all tests, even after a requirement has failed")
     parser.option("--held-out", "also list the held-out mutants one by one")
     parser.option("--list", "list the mutants without playing tests")
@@ -346,9 +346,9 @@ _COMMANDS = {
     "close": _Command(
         *(_add_closing_options, _close, "the first"),
         "generate tests until coverage has no holes",
-        "Generate tests aimed at uncovered items: from runs of a model if there is one, by biased "
+        "Generate tests for uncovered items: from runs of a model if there is one, by biased "
         "choices, and by mutating the nearest test. Play and evaluate them until everything that "
-        "can be covered is; keep a smallest set of tests with the same coverage.",
+        "can be covered is covered; keep a smallest set of tests with the same coverage.",
         "--out out/closed",
     ),
     "replay": _Command(
@@ -368,7 +368,7 @@ _COMMANDS = {
         *(_add_mutate_options, _mutate, "the first"),
         "measure which small faults in code and requirements the tests detect",
         "Plant one small fault at a time, play the tests of each strategy, and show which test "
-        "kills the mutant, or the question that a survivor raises.",
+        "kills each mutant, and which question each survivor raises.",
         "--list",
     ),
 }

@@ -12,10 +12,10 @@ def add_run(subparsers: Subparsers) -> None:
     """Declare the arguments of `rvmon run`."""
     parser = subparsers.add_parser(
         "run",
-        description="Evaluate recordings (.csv, .jsonl, .parquet, bags of ROS, .mcap, or - for "
-        "JSON lines on standard input) against a specification: P passed, F failed, NT not "
-        "triggered, I inconclusive. Exit code 0: no requirement failed; 1: one failed, or with "
-        "--strict is I or NT; 2: wrong input.",
+        description="Evaluate recordings (.csv, .jsonl, .parquet, ROS bags, .mcap, or - for JSON "
+        "lines on standard input) against a specification: P passed, F failed, NT not triggered, "
+        "I inconclusive. Exit code 0: no requirement failed; 1: one failed, or with --strict is I "
+        "or NT; 2: wrong input.",
         epilog="examples: rvmon run examples/base.rv examples/base.csv; rvmon run "
         "examples/base.rv examples/base.csv --only B2 --report pages --junit "
         "verdicts.xml",
@@ -28,8 +28,8 @@ def add_run(subparsers: Subparsers) -> None:
     declare(parser, *ONLY[1:], *EVALUATED)
     parser.option(
         "--join",
-        "join the files, or those of the folder, by time into one recording; names are COLUMN or "
-        "FILE.COLUMN",
+        "join the files, or the files of a folder, by time into one recording; names are COLUMN "
+        "or FILE.COLUMN",
     )
     parser.option("--jobs N", "number of processes (default: 1)", type=positive, default=1)
     declare(parser, "--dask")
@@ -54,8 +54,8 @@ def add_run(subparsers: Subparsers) -> None:
     )
     parser.option(
         "--shard I/N",
-        "with --out: evaluate one share of the recordings, such as 2/4, into a file of its own; "
-        "the same command with --resume instead joins all shares",
+        "with --out: evaluate one share of the recordings, such as 2/4, and write it to its own "
+        "file; the same command with --resume instead of --shard joins all shares",
         type=shard,
     )
     parser.option(
@@ -76,7 +76,7 @@ def add_run(subparsers: Subparsers) -> None:
     parser.option("--strict", "exit with 1 also if a requirement is I or NT")
     parser.option(
         "--require-triggered [=IDS]",
-        "exit with 1 if one of these requirements (default: any) was triggered in no recording",
+        "exit with 1 if one of these requirements (default: all) was triggered in no recording",
     )
     declare(parser, "--max-memory")
 
@@ -91,19 +91,19 @@ def add_watch(subparsers: Subparsers) -> None:
         description="Evaluate JSON lines as they arrive, and report each verdict as soon as it "
         "is decided; a missed deadline is reported when it has passed, not at the next line. A "
         "changed specification is loaded at once. Ends with the stream, or with Ctrl-C. Exit "
-        "code 0: every requirement is P or NT; 1: one failed or is I, or nothing came; 2: wrong "
-        "input.",
+        "code 0: every requirement is P or NT; 1: one failed or is I, or there was no input; 2: "
+        "wrong input.",
         epilog='example: printf \'{"t":0,"speed":0.5,"obstacle":0.4}\\n\' | '
         "rvmon watch examples/base.rv",
     )
     declare(parser, "SPEC")
     parser.option(
         "SOURCE",
-        "a pipe or file of JSON lines (default: standard input), or mqtt://HOST/TOPICS, "
-        "whose first + names the robot, such as mqtt://localhost/robots/+/#, ros1: (ROS 1 "
-        "topics), ros2: (ROS 2 topics) or dds:DOMAIN (ROS 2 topics without an installation of "
-        "ROS). Lines with a time stamp (t, t_ns, --time) are evaluated at that time, others when "
-        "they arrive",
+        "a pipe or file of JSON lines (default: standard input); mqtt://HOST/TOPICS, such as "
+        "mqtt://localhost/robots/+/#, where the first + is the name of the robot; ros1: (ROS 1 "
+        "topics); ros2: (ROS 2 topics); or dds:DOMAIN (ROS 2 topics without a ROS installation). "
+        "Lines with a time stamp (t, t_ns, --time) are evaluated at that time, others when they "
+        "arrive",
         nargs="?",
         default="-",
     )
@@ -118,15 +118,15 @@ def add_watch(subparsers: Subparsers) -> None:
     parser.option(
         "--realtime TIME",
         "the stamps of the lines are the time of day since 1970, and lines arrive at most "
-        f"TIME later ({TIME_FORMS}; default: 500ms): deadlines pass while no line comes, too",
+        f"TIME later ({TIME_FORMS}; default: 500ms), so deadlines pass even if no line arrives",
         nargs="?",
         type=span,
         const=_LAG_NS,
     )
     parser.option(
         "--sim-time",
-        "take the time from the topic /clock (`use_sim_time`); the default of ros1: if the "
-        "parameter of that name is true",
+        "take the time from the topic /clock; the default for ros1: if the parameter "
+        "`use_sim_time` is true",
     )
     parser.option(
         "--room N",
@@ -188,7 +188,7 @@ def add_clip(subparsers: Subparsers) -> None:
     )
     parser.option("--from TIME", f"first instant ({TIME_FORMS})", type=ticks, dest="start")
     parser.option("--to TIME", f"last instant ({TIME_FORMS})", type=ticks, dest="stop")
-    parser.option("-o --out FILE", "the cut recording; a folder for a bag of ROS 2")
+    parser.option("-o --out FILE", "the cut recording; a folder for a ROS 2 bag")
     parser.option(
         "--reproducer FILE",
         "one file (.rvcase) with the cut recording and the specification: `rvmon why FILE` "
@@ -234,7 +234,9 @@ def add_cover(subparsers: Subparsers) -> None:
         "a cross is shown as a grid",
     )
     parser.option(
-        "--tests", "list the tests with their contributions, and a short order that covers as much"
+        "--tests",
+        "list the tests with their contributions, and a short sequence of tests with the same "
+        "coverage",
     )
     parser.option(
         "--compare OLD",
@@ -247,13 +249,13 @@ def add_cover(subparsers: Subparsers) -> None:
     parser.option("--merge OUT", "merge the databases into this one")
     parser.option(
         "--require PERCENT",
-        "exit with 1 if less is covered, or if an illegal item, or one declared unreachable, was "
-        "hit",
+        "exit with 1 if less is covered, or if an item was hit that is illegal or declared "
+        "unreachable",
         type=percentage,
     )
     parser.option(
         "--strict",
-        "exit with 1 if an illegal item, or one declared unreachable, was hit, if a test failed "
+        "exit with 1 if an item was hit that is illegal or declared unreachable, if a test failed "
         "or did not complete, or if --compare shows a loss",
     )
     declare(parser, "--max-memory")

@@ -36,17 +36,18 @@ _ABOUT = {
     "--tag TAGS": "only requirements with one of these tags: stop,arm; if given twice, with one "
     "tag of each list",
     "--const NAME=VALUE": "set a constant of the specification to another value",
-    "--until TIME": f"evaluate up to TIME ({TIME_FORMS}), whether or not the recording goes on "
-    "that long",
+    "--until TIME": f"evaluate up to TIME ({TIME_FORMS}), whether the recording is longer or "
+    "shorter",
     "--time COLUMN[:UNIT]": "the column of time stamps, and their unit: s, ms, us, ns, iso "
     "(ISO 8601), or a date format such as %%d.%%m.%%Y %%H:%%M:%%S; SEC+NANOSEC names two columns "
     "(default: t in seconds, or t_ns)",
     "--map NAME=COLUMN": "read the declared NAME from this column, or topic and field; repeatable",
-    "--nan": "how to read NaN: as unknown (default), or as no update, which merges of topics need",
+    "--nan": "the meaning of NaN: unknown (default), or no update, for tables merged from several "
+    "topics",
     "--binding FILE": "TOML file that maps topics and fields of messages (bags, MCAP) to declared "
     "names; `rvmon init DATA --for SPEC` proposes one",
     "--clock": "time stamp of messages for which the binding names none: the time of recording "
-    "(log, default) or the header's stamp",
+    "(log, default) or the stamp in the header",
     "--allow-missing [=NAMES]": "accept recordings that have no column for these names (default: "
     "any); requirements that read them are I, and the exit code is 1",
     "--dask ADDRESS": "distribute the work over the workers of this Dask scheduler, instead of "

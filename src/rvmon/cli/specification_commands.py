@@ -64,8 +64,7 @@ def add_check(subparsers: Subparsers) -> None:
     declare(parser, "--const", "--binding")
     parser.option(
         "--format",
-        "how to print findings: in full, one line each, or as JSON, which has a line for each as "
-        "well (default: text)",
+        "how to print findings: in full (default), on one line each, or as JSON with one line each",
         choices=("text", "concise", "json"),
         default="text",
     )
@@ -89,8 +88,8 @@ def add_explain(subparsers: Subparsers) -> None:
     parser = subparsers.add_parser(
         "explain",
         description="Explain a requirement: in plain words, with its automaton and the shortest "
-        "runs on which it passes, fails, is not triggered or stays open. Of two requirements, "
-        "show where they differ. Of a diagnostic code such as RV012, show its page; `codes` "
+        "runs on which it passes, fails, is not triggered or stays open. For two requirements, "
+        "show where they differ. For a diagnostic code such as RV012, show its page; `codes` "
         "lists all codes.",
         epilog="examples: rvmon explain examples/base.rv B2; rvmon explain RV001",
     )
@@ -120,8 +119,8 @@ def add_lsp(subparsers: Subparsers) -> None:
     parser = subparsers.add_parser(
         "lsp",
         description="Serve an editor over standard input and output by the Language Server "
-        "Protocol: findings, explanations, definitions, names and units, layout. It ends when the "
-        "editor does.",
+        "Protocol: diagnostics, explanations, definitions, completion and layout. It ends when "
+        "the editor does.",
         epilog="example: rvmon lsp --stdio",
     )
     parser.option("--stdio", "accepted for editors that pass it; it is the default")
@@ -149,7 +148,7 @@ def add_verify(subparsers: Subparsers) -> None:
     )
     parser.option(
         "--bind NAME=EXPR",
-        "the expression of the model that a signal of the specification stands for",
+        "the model expression that is the value of a signal of the specification",
         action="append",
         default=[],
     )
@@ -177,7 +176,7 @@ def add_conform(subparsers: Subparsers) -> None:
         description="Decide whether recordings (.csv, .jsonl) are runs of a network of timed "
         "automata; their events are labels of its edges, or its channels. The first sample is "
         "the network's start. Exit code 0: all conform; 1: one does not, or is not decided; 2: a "
-        "recording cannot be read, or holds no action of the model.",
+        "recording cannot be read, or contains no action of the model.",
         epilog="example: rvmon conform examples/models/dock.ta examples/models/dock_monday.csv",
     )
     declare(parser, "MODEL")
@@ -195,8 +194,8 @@ def add_conform(subparsers: Subparsers) -> None:
     )
     parser.option(
         "--until TIME",
-        f"compare up to TIME ({TIME_FORMS}) after the first sample, whether or not the "
-        "recording goes on that long",
+        f"compare up to TIME ({TIME_FORMS}) after the first sample, whether the recording is "
+        "longer or shorter",
         type=span,
     )
     declare(parser, "--format")
@@ -207,11 +206,11 @@ def add_export(subparsers: Subparsers) -> None:
     """Declare the arguments of `rvmon export`."""
     parser = subparsers.add_parser(
         "export",
-        description="Of a specification, write a monitor that does not need rvmon: C99 sources "
+        description="From a specification, write a monitor that does not need rvmon: C99 sources "
         "(the core, the compiled specification, a header for C++) that run in one block of "
-        "memory. Or write its automata: dot for Graphviz, json, hoa (the minimal LTL3 monitors "
-        "of requirements without time windows); a requirement that has none is left out, with "
-        "the reason. Of a model, write dot, or XML for UPPAAL.",
+        "memory. Or write its automata: dot for Graphviz, json, or hoa (the minimal LTL3 "
+        "monitors of requirements without time windows); a requirement without an automaton is "
+        "left out, with the reason. From a model, write dot, or XML for UPPAAL.",
         epilog="examples: rvmon export examples/base.rv --to c -o monitor/; rvmon export "
         "examples/base.rv --to dot --only B1 | dot -Tsvg -o b1.svg; rvmon export "
         "examples/models/fischer.ta --to uppaal -o fischer.xml",
