@@ -1,4 +1,4 @@
-"""Logs of CAN, decoded by databases; needs python-can and cantools, the extra `can`."""
+"""Reader of CAN logs, decoded by databases; needs python-can and cantools, the extra `can`."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _UNREAD = "there is a line that cannot be read"
 _DROPPED = "what recorded it says that frames were lost"
 _NEVER, _ALWAYS = re.compile("(?!)"), re.compile("")
 _ERROR = r"\(\S+\)\s+\S+\s+[23]"
-"""Before the rest of the identifier of an error frame of SocketCAN, as candump writes it."""
+"""The start of an error frame in candump's format, up to the first digit of its identifier."""
 
 _TEXTS = {
     ".asc": (
@@ -46,22 +46,23 @@ _TEXTS = {
         re.compile(rf"DROPCOUNT|{_ERROR}[\dA-F]{{7}}#"),
     ),
 }
-"""Patterns of lines of text that are no frames, as the library skips lines it cannot read; of lines
-that report lost frames, as a buffer overflowed (CAN_ERR_CRTL_RX_OVERFLOW; OVERRUN and QOVERRUN of
-PCAN); of lines that the library would take for frames, or cannot skip."""
+"""Three patterns of lines per text format. The first: known lines without a frame; the library
+skips these, but also any line that it cannot read. The second: lines that report lost frames after
+an overflow (CAN_ERR_CRTL_RX_OVERFLOW; OVERRUN and QOVERRUN of PCAN). The third: lines that must be
+hidden from the library, as it would take them for frames or fail."""
 
 _LOST = {125: True, 126: False}
-"""By the number of an object of BLF whether frames are lost from there on, or up to there."""
+"""By the type of a BLF object: whether frames are lost from there on, or were lost up to there."""
 
-_PDU_2 = 240  # from this format on the second byte of an identifier of J1939 is no address
+_PDU_2 = 240  # from this PDU format on, the second byte of a J1939 identifier is no address
 
 
 class FrameMessages(Messages):
-    """An open log, gone through once for what is in it.
+    """An open CAN log; opening it reads it once to find its topics.
 
-    Without texts of databases, by file name, those beside the log count. A topic is a message of
-    the database that the log has: its name says the channel where the message comes on several, and
-    the identifier where another has its name.
+    Databases are the texts in `definitions` (by file name), or else the files beside the log. Each
+    database message in the log is a topic. The name of the topic includes the channel if the
+    message was seen on several channels, and the identifier if another message has the same name.
     """
 
     def __init__(self, path: Path, definitions: Mapping[str, str]) -> None:
@@ -69,7 +70,7 @@ class FrameMessages(Messages):
         self._is_cut = _is_cut(path)
         self._known = _messages(path, definitions)
         self._seen: dict[_Key, Any] = {}
-        # the stretches of lines that cannot be read, and its end if it was cut off
+        # where lines cannot be read or frames were lost, and the end if the log was cut off
         self.outages: list[Outage] = []
         self._called = _names(self._known.values())
         channels: dict[str, set[Any]] = {}
@@ -116,7 +117,7 @@ class FrameMessages(Messages):
     def _frames(
         self, outages: list[Outage] | None = None
     ) -> Iterator[tuple[int, _Key, Any, bytes]]:
-        """Ticks, identifier, channel and data of each frame of data; stretches that were lost."""
+        """Yield ticks, identifier, channel and data of each data frame; add losses to `outages`."""
         ending = self._path.suffix.lower()
         if ending == ".mf4":
             from rvmon.recordings.messages.mdf import mdf_frames
@@ -130,7 +131,7 @@ class FrameMessages(Messages):
             for frame in frames:
                 t = ticks_of_seconds(frame.timestamp)
                 if (why := losing.take()) and outages is not None:
-                    # What was lost may have had the stamp of its neighbour.
+                    # A lost frame may have had the stamp of the frame before it.
                     outages.append(Outage(t - 1 if last is None else min(last, t), t, why))
                 last = t
                 if frame.is_error_frame or frame.is_remote_frame:
@@ -142,10 +143,10 @@ class FrameMessages(Messages):
             if losing.why and outages is not None and last is not None:
                 outages.append(Outage(last, last + 1, losing.why))
         if held is not None and not (self._is_cut and ending != ".blf"):
-            yield held  # of a line that is cut off nobody knows what it held
+            yield held  # the last frame, unless its line may have been cut off
 
     def read(self, topics: Collection[str]) -> Iterator[Message]:
-        """The frames of these topics, as they were recorded."""
+        """Yield the frames of these topics, decoded, in the order of the log."""
         readers: dict[int, Callable[[bytes], Mapping[str, Any]]] = {}
         for t, key, channel, data in self._frames():
             message = self._message(key)
@@ -156,20 +157,20 @@ class FrameMessages(Messages):
                 readers[which] = _reader(message)
             try:
                 yield name, t, readers[which](data)
-            except Exception as error:  # noqa: BLE001 - the library has errors of its own
+            except Exception as error:  # noqa: BLE001 - the library has its own exceptions
                 raise TraceError(
                     f"a frame of {name} at {t} ns does not fit the database ({first_line(error)})"
                 ) from None
 
 
 class _Lines:
-    """The lines of a text, with what was lost between those that are frames."""
+    """The lines of a text log as the library reads them, watched for losses between frames."""
 
     def __init__(self, file: Any, patterns: tuple[re.Pattern[str], ...]) -> None:
         self._file = file
         self._others, self._lost, self._hidden = patterns
         self._line = ""
-        self.why = ""  # something was lost since the last frame; empty: nothing
+        self.why = ""  # the cause of a loss since the last frame; "": nothing was lost
 
     def __iter__(self) -> _Lines:
         return self
@@ -183,22 +184,22 @@ class _Lines:
             self._line = next(self._file, "")
             if not self._line:
                 raise StopIteration
-            if "\0" in self._line:  # a block that was not written: of several lines it makes one
+            if "\0" in self._line:  # a block that was never written joins several lines to one
                 self.why = _UNREAD
             if not self._hidden.match(self._line):
                 return self._line
 
     def take(self) -> str:
-        """The loss before the line that was read last, which is a frame."""
+        """The cause of a loss before the line read last, which is a frame; "": nothing was lost."""
         found, self.why, self._line = self.why, "", ""
         return found
 
     def close(self) -> None:
-        """The reader closes what it was given; the file is closed by who opened it."""
+        """Do nothing: the library calls this, but the file is closed where it was opened."""
 
 
 def _is_cut(path: Path) -> bool:
-    """Whether a log ends before it should: a text within a line, BLF before its size."""
+    """Whether a log was cut off: a text ends within a line, or BLF has not its stated size."""
     ending = path.suffix.lower()
     with open(path, "rb") as file:
         size = file.seek(0, 2)
@@ -210,13 +211,13 @@ def _is_cut(path: Path) -> bool:
 
 
 def _reading(path: Path, file: Any) -> tuple[Iterable[Any], Any]:
-    """The frames of an open log, and what tells of losses between them, as `_Lines` does."""
+    """The frames of an open log, and the object that tells losses between them, like `_Lines`."""
     with needed("a log of CAN", "python-can"):
         from can import ASCReader, BLFReader, CanutilsLogReader, TRCReader
     logging.getLogger("can").setLevel(logging.CRITICAL)
 
     class Objects(BLFReader):
-        """Objects of BLF, of which the library passes over those that say that some were lost."""
+        """A BLF reader that notes objects about lost frames, which the library skips."""
 
         why, is_losing = "", False
 
@@ -251,7 +252,12 @@ def _reading(path: Path, file: Any) -> tuple[Iterable[Any], Any]:
 
 
 def _messages(path: Path, definitions: Mapping[str, str]) -> Mapping[_Key, Any]:
-    """The messages of all databases by identifier; those of J1939 by their group as well."""
+    """The messages of all databases by identifier; those of J1939 by their group as well.
+
+    Raises:
+        TraceError: there is no database, or one cannot be read.
+        RvmonError: cantools is not installed.
+    """
     with needed("a database of CAN", "cantools"):
         from cantools import database
     logging.getLogger("cantools").setLevel(logging.CRITICAL)
@@ -270,7 +276,7 @@ def _messages(path: Path, definitions: Mapping[str, str]) -> Mapping[_Key, Any]:
                 loaded = database.load_string(texts[name], database_format=form, strict=False)
             else:
                 loaded = database.load_file(name, strict=False)
-        except Exception as error:  # noqa: BLE001 - each form of database has errors of its own
+        except Exception as error:  # noqa: BLE001 - each form of database has its own exceptions
             raise TraceError(
                 f"{name} cannot be read as a database of CAN ({first_line(error)})"
             ) from None
@@ -283,7 +289,7 @@ def _messages(path: Path, definitions: Mapping[str, str]) -> Mapping[_Key, Any]:
 
 
 def _names(messages: Iterable[Any]) -> Mapping[int, str]:
-    """The names of messages, by identity; with their identifier where two have the same name."""
+    """The names of messages by object id, with the identifier where two have the same name."""
     known = {id(message): message for message in messages}
     counts = Counter(message.name for message in known.values())
     digits = {
@@ -297,7 +303,7 @@ def _names(messages: Iterable[Any]) -> Mapping[int, str]:
 
 
 def _group(key: _Key) -> _Key:
-    """The group of an identifier of J1939, which no identifier is equal to."""
+    """The parameter group of a J1939 identifier, as a negative key that no identifier equals."""
     form, specific = key[0] >> 16 & 0xFF, key[0] >> 8 & 0xFF
     page = key[0] >> 24 & 3
     return -(page << 16 | form << 8 | (specific if form >= _PDU_2 else 0)) - 1, True
@@ -310,7 +316,7 @@ def _topic(name: str, message: Any) -> Topic:
 
 
 def _is_named(signal: Any) -> bool:
-    """Whether the values of a signal have names that are its values: states, and no number."""
+    """Whether a signal is an enumeration: its named values are states, not special numbers."""
     if not signal.choices or len(signal.choices) < 2 or signal.unit:
         return False
     return bool(signal.conversion.scale == 1 and signal.conversion.offset == 0)
@@ -326,7 +332,7 @@ def _kind(signal: Any) -> Kind:
 
 
 def _reader(message: Any) -> Callable[[bytes], Mapping[str, Any]]:
-    """A decoder of frames; a value that is a name where a number is expected is unknown."""
+    """A decoder of frames; a number with a name, such as "not available", is unknown."""
     named = {signal.name: signal.choices for signal in message.signals if _is_named(signal)}
     special = {
         signal.name: {

@@ -1,4 +1,4 @@
-"""The units that comments in definitions of messages say, beside a field or above it."""
+"""Units in the comments of message definitions, which are beside a field or above it."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ _SPOKEN = {
     "J": "joule",
     "L": "litre liter",
 }
-"""Words that people write for units."""
+"""Words that people write for a unit, by unit."""
 
 _UNITS = {word: unit for unit, words in _SPOKEN.items() for word in words.split()}
 
@@ -58,7 +58,7 @@ _WRITTEN = {
     r"(?<=/s|ec)2$": "^2",
     r"/s(ec\w*)?/s(ec\w*)?$": "/s^2",
 }
-"""Other spellings of units."""
+"""Replacements for other spellings of units, by pattern."""
 
 _BRACKETS = re.compile(r"[\[(]([^\[\]()]*)[\])]")
 
@@ -69,13 +69,15 @@ _BEHIND_IN = re.compile(
 _POWER = r"(?:0?\.0*1|10+|1e-?\d|10\^-?\d)"
 
 _SCALE = re.compile(rf"(?<![\d.]){_POWER}\s*\*?\s*(?=[a-zA-Z])|\s*[*/x]\s*{_POWER}$|E\d$")
-"""A power of ten beside a unit: tenths, or hundreds, of it."""
+"""A power of ten beside a unit, which means tenths, or hundreds, of the unit."""
 
 _FIELD = re.compile(r"(?P<type>[\w/]+)(?:<=\d+)?(?:\[[^\]]*\])?\s+(?P<name>\w+)[^=]*")
 
 
 def spoken_unit(text: str) -> str:
-    """The unit that a person wrote, as the language has it, `~` before one of another scale.
+    """Convert a unit written by a person to the language's spelling; "" if it is none.
+
+    A `~` before the unit means another scale of it.
 
     >>> spoken_unit("rad/sec"), spoken_unit("Degrees Celsius"), spoken_unit("10mA")
     ('rad/s', 'degC', '~mA')
@@ -91,7 +93,7 @@ def spoken_unit(text: str) -> str:
         found = parse_unit("/".join(parts))
     except UnknownUnitError:
         return ""
-    # Is it a gram, or how things fall?
+    # `g` is ambiguous: a gram, or the acceleration of gravity.
     return "" if found.symbol in ("", "g") else f"{'~' * is_scaled}{found.symbol}"
 
 
@@ -103,7 +105,7 @@ def _part(text: str) -> str:
 
 
 def unit_in_comment(comment: str) -> str:
-    """The unit that a comment says; empty if it says none.
+    """The unit that a comment states; "" if it states none.
 
     >>> unit_in_comment("Tire pressures (kPa)"), unit_in_comment("left wheel in rad/sec.")
     ('kPa', 'rad/s')
@@ -116,10 +118,10 @@ def unit_in_comment(comment: str) -> str:
 
 
 def comments_of(definition: str) -> Mapping[str, Mapping[str, str]]:
-    r"""What the text of a definition says of fields: by type (the first is ""), by field.
+    r"""The comments in the text of a definition: by type ("" for the first), by field.
 
-    A comment above a field is of the next field; one that speaks of several, `# speeds (m/s)`, of
-    all of a type that follow it.
+    A comment above a field belongs to the next field. A comment in the plural, `# speeds (m/s)`,
+    belongs to all following fields of the same type.
 
     >>> comments_of("# Speeds (rad/s)\nfloat32 left\nfloat32 right\nbool ok  # in use")
     {'': {'left': 'Speeds (rad/s)', 'right': 'Speeds (rad/s)', 'ok': 'in use'}}
@@ -150,7 +152,7 @@ def _comments_in(part: str) -> Iterator[tuple[str, str]]:
 
 
 def is_vector(type_name: str) -> bool:
-    """Whether what is said of a message of a type is said of each of its fields.
+    """Whether a type is a vector, so that a comment on it is true of each of its fields.
 
     >>> is_vector("geometry_msgs/Vector3"), is_vector("geometry_msgs/Pose")
     (True, False)

@@ -1,4 +1,4 @@
-"""Logs of ArduPilot (DataFlash, `.BIN`); needs pymavlink, the extra `mavlink`."""
+"""Reader of ArduPilot logs (DataFlash, `.BIN`); needs pymavlink, the extra `mavlink`."""
 
 from __future__ import annotations
 
@@ -22,31 +22,38 @@ from rvmon.trace.time import TICKS_PER_UNIT, TIME_LIMIT
 
 _CODES = "i1 u1 <f2 <i2 <u2 <i4 <u4 <f4 S4 S16 S64 <i2 <u2 <i4 <u4 <i4 <f8 u1 <i8 <u8"
 _TYPES = {"a": ("<i2", (32,)), **dict(zip("bBghHiIfnNZcCeELdMqQ", _CODES.split(), strict=True))}
-"""Types of NumPy by the letters of a format."""
+"""NumPy types by the letters of a message format."""
 
 _MAGIC = b"\xa3\x95"
 _HEAD = 3
-_PAGE = 528  # bytes behind the last message of a log that is written in pages
+_PAGE = 528  # bytes of a page; less than a page of filling may follow the last message
 
 _ERASED = 0xFF
 
 _STAMPS = tuple(map(stamps_of, ("T:ms", "TimeUS:us", "TimeMS:ms")))
-"""The fields that say when a message was written; `T` where `TimeMS` is of satellites."""
+"""The possible stamp fields, by preference. `T` is only for GPS messages, whose `TimeMS` is the
+time of the satellites."""
 
 _OF_THE_LOG = frozenset({"FMT", "FMTU", "UNIT", "MULT"})
-"""Messages that say how the others are written."""
+"""Messages that describe the format of the others."""
 
 
 def dataflash_messages(path: Path) -> ColumnMessages:
-    """Open a log."""
+    """Open a log.
+
+    Raises:
+        TraceError: the file is no DataFlash log, or its formats are damaged.
+        RvmonError: pymavlink is not installed.
+        OSError: the file cannot be opened.
+    """
     with needed("DataFlash", "pymavlink"):
         from pymavlink.DFReader import DFReader_binary
 
     class Indexed(DFReader_binary):  # type: ignore[misc]  # it has no types
-        """The places of the messages of a log."""
+        """The index of the messages of a log, by the library."""
 
         def init_clock(self) -> None:
-            """Nothing: it would go through all messages, and never past one of length 0."""
+            """Do nothing: the library would read all messages, and hang at one of length 0."""
 
     with open(path, "rb") as file:
         if file.read(2) != _MAGIC:
@@ -70,7 +77,7 @@ def dataflash_messages(path: Path) -> ColumnMessages:
 
 @contextmanager
 def _silent() -> Iterator[None]:
-    """The library, in part in C, writes a line for each byte that is damaged: let nothing show."""
+    """Silence the library, which prints a line for each damaged byte, partly from C code."""
     said = StringIO()
     with redirect_stdout(said), redirect_stderr(said), open(os.devnull, "wb") as nowhere:
         shown = os.dup(2)
@@ -83,7 +90,7 @@ def _silent() -> Iterator[None]:
 
 
 def _starts(form: Any, data: Any, found: Any) -> Any:
-    """The places of the messages of a format, but for damaged ones, whose stamp is out of range."""
+    """The offsets of a format's messages, without damaged ones, whose stamp is out of range."""
     starts = np.asarray(found, np.int64)
     stamps = _stamps_of(form)
     if stamps is None or not len(starts):
@@ -95,7 +102,11 @@ def _starts(form: Any, data: Any, found: Any) -> Any:
 
 
 def _rows(form: Any, data: Any, starts: Any) -> Any:
-    """The messages of a format that begin at those places, as they are written."""
+    """The messages of a format at these offsets, as a structured array of raw values.
+
+    Raises:
+        TraceError: the format contradicts itself.
+    """
     letters = list(form.msg_fmts)
     if len(letters) != len(form.columns):
         raise TraceError(f"its format of {form.name} names fields without a type: copy it again")
@@ -109,7 +120,7 @@ def _rows(form: Any, data: Any, starts: Any) -> Any:
 
 
 def _topics(form: Any, data: Any, starts: Any) -> list[ColumnTopic]:
-    """The topics of a message in a log; each instance is a topic of its own."""
+    """The topics of a message format; each instance (of a sensor, say) is a topic of its own."""
     rows = _rows(form, data, starts[starts + form.len <= len(data)])
     stamps = _stamps_of(form)
     if stamps is None or not len(rows):
@@ -142,13 +153,13 @@ def _topics(form: Any, data: Any, starts: Any) -> list[ColumnTopic]:
 
 
 def _stamps_of(form: Any) -> Stamps | None:
-    """The field of a message that says when it was written."""
+    """The stamp field of a message format; `None` if it has none."""
     known = _STAMPS if form.name.startswith("GPS") else _STAMPS[1:]
     return next((stamps for stamps in known if stamps.column in form.columns), None)
 
 
 def _cells(column: Any, scale: float | None) -> Any:
-    """Values as they are meant: texts without filling, numbers to scale."""
+    """The values of a raw column: texts without padding, numbers scaled."""
     if column.dtype.kind == "S":
         texts = [one.partition(b"\0")[0].decode("utf-8", "replace") for one in column.tolist()]
         return np.array(texts, object)
@@ -160,7 +171,7 @@ def _cells(column: Any, scale: float | None) -> Any:
 
 
 def _damage(log: Any, data: Any, starts: Mapping[int, Any], end: int) -> list[Outage]:
-    """The stretches in which something stands that is no message."""
+    """The outages at bytes that belong to no message, in order."""
     places = np.concatenate([*starts.values()])
     lengths = np.concatenate(
         [np.full(len(own), log.formats[number].len) for number, own in starts.items()]
@@ -179,7 +190,7 @@ def _damage(log: Any, data: Any, starts: Mapping[int, Any], end: int) -> list[Ou
     found = []
     for gap in np.flatnonzero(behind[:-1] != places[1:]).tolist():
         before, after = times[: gap + 1], times[gap + 1 :]
-        since = int(before.max())  # what was lost may have had the stamp of its neighbour
+        since = int(before.max())  # a lost message may have had the stamp of the one before
         known = after[after >= 0]
         until = int(known[0]) if len(known) else max(end, since)
         why = f"there is no message at byte {int(behind[gap]):,}"

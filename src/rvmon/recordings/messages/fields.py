@@ -1,4 +1,4 @@
-"""Fields of messages: how they are written, found and read; elements of arrays by their names."""
+"""Fields of messages: parsing of paths, checks against topics, and functions that read values."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ _STEP = re.compile(r"\.?([^\W\d]\w*)|\[(\d{1,9})\]|\[([^\[\]\s](?:[^\[\]]*[^\[\]
 
 _ABSENT = object()
 
-_SHOWN = 6  # fields that a message lists
+_SHOWN = 6  # the most fields that an error lists
 
 _STAMPS = ("header.stamp", "stamp", "timestamp")
 _PARTS = (("sec", "nanosec"), ("sec", "nsec"), ("secs", "nsecs"), ("seconds", "nanos"))
 
 
 def field_of(text: str) -> Field | None:
-    """Read a path such as `pose.position.x`, `ranges[0]`, `position[elbow]`; `None` if it is none.
+    """Parse a path such as `pose.position.x`, `ranges[0]`, `position[elbow]`; `None`: malformed.
 
     >>> field_of("poses[0].x"), field_of("2x"), str(field_of("values[Battery level].value"))
     (Field(path=('poses', 0, 'x')), None, 'values[Battery level].value')
@@ -44,7 +44,7 @@ def field_of(text: str) -> Field | None:
 
 
 def _fields_in(term: Term, sign: str = "") -> Iterator[tuple[Field | Elements, bool]]:
-    """The fields that a term reads, and whether the text of each is read as a number."""
+    """Yield the fields that a term reads, and whether `number` reads the text of each."""
     if isinstance(term, Field | Elements):
         yield term, sign == "number"
     elif isinstance(term, Applied):
@@ -53,7 +53,11 @@ def _fields_in(term: Term, sign: str = "") -> Iterator[tuple[Field | Elements, b
 
 
 def kind_of(field: Field | Elements, topic: Topic) -> Kind | None:
-    """The kind of the values of a field; `None` if nobody knows."""
+    """The kind of a field's values; `None` if it is not known.
+
+    Raises:
+        TraceError: the topic has no such field, or it is an array or a message.
+    """
     path = re.sub(r"\[[^\[\]]*\]", "[]", str(field))
     if not topic.leaves or path in topic.leaves:
         return None if path in topic.doubtful else topic.leaves.get(path)
@@ -77,7 +81,11 @@ def _listed(leaves: list[str]) -> str:
 def expect_kinds(
     name: str, kind: Kind, term: Term, labels: Mapping[str, str], topic: Topic
 ) -> None:
-    """See that the fields of a term can give values of a kind."""
+    """Check that the fields of a term can give values of a kind.
+
+    Raises:
+        TraceError: a field is missing, or its values are of another kind.
+    """
     for field, is_text in _fields_in(term):
         found = kind_of(field, topic)
         if found is None or (is_text and found is Kind.LABEL):
@@ -104,11 +112,11 @@ def expect_kinds(
 
 
 def getter(term: Term) -> Get:
-    """A function that gives the value of a term for the content of a message.
+    """Make a function from the content of a message to the value of a term.
 
-    A content is an object with attributes, or a mapping. The function raises `KeyError` where one
-    lacks a field; an element behind the end of an array, and what is calculated with it, is `None`,
-    which is unknown.
+    The content is an object with attributes, or a mapping. The function raises `KeyError` if a
+    field is missing. An element beyond the end of an array is `None` (unknown), and so is a result
+    computed with it.
     """
     match term:
         case Constant(value=value):
@@ -143,7 +151,7 @@ def getter(term: Term) -> Get:
 
 
 def _with_dots(content: Mapping[str, Any], path: Sequence[Step]) -> Any:
-    """A field whose name has dots itself, as JSON may: `{"pose.x": 1}`."""
+    """Read a field whose own name has dots, as is possible in JSON: `{"pose.x": 1}`."""
     for count in range(len(path), 0, -1):
         inner = content.get(".".join(map(str, path[:count])), _ABSENT)
         if count == len(path) and inner is not _ABSENT:
@@ -161,7 +169,7 @@ def _calculated(operation: Callable[..., float], values: list[Any]) -> Any:
             raise TraceError(f"`{shorten(value)}` is no number to calculate with")
         if value != value:
             return None
-    if inf in known or -inf in known:  # as sensors say that nothing is in range
+    if inf in known or -inf in known:  # sensors report infinity if nothing is in range
         with suppress(ValueError, ArithmeticError):
             result = operation(*known)
             return None if result != result else result
@@ -169,7 +177,11 @@ def _calculated(operation: Callable[..., float], values: list[Any]) -> Any:
 
 
 def stamp_getter(topic: Topic) -> Callable[[Any], int]:
-    """A function that gives the ticks that the header of a message says."""
+    """Make a function from the content of a message to its header stamp, in ticks.
+
+    Raises:
+        TraceError: messages of the topic have no header stamp.
+    """
     for prefix in _STAMPS:
         for seconds, parts in _PARTS:
             if {f"{prefix}.{seconds}", f"{prefix}.{parts}"} <= topic.leaves.keys():
@@ -184,16 +196,16 @@ def stamp_getter(topic: Topic) -> Callable[[Any], int]:
 Get = Callable[[Any], Any]
 
 NAMES = ("name", "names", "joint_names", "dof_names", "interface_names", "interface_groups")
-"""Arrays that name the elements of those beside them, or below what is beside them."""
+"""Arrays that name the elements of parallel arrays: their siblings, or arrays inside siblings."""
 
 KEYS = ("name", "key", "child_frame_id", "joint_name", "hardware_id", "device_id", "id")
-"""Fields that name the message that they are in."""
+"""Fields that name the message which contains them."""
 
 _LISTS = re.compile(rf"(^|\.)({'|'.join(NAMES)})\[\]$")
 
 
 def arrays_of_names(topic: Topic) -> list[str]:
-    """The arrays of a topic whose elements name those of others."""
+    """The arrays of a topic that name the elements of other arrays."""
     return [
         leaf
         for leaf, kind in topic.leaves.items()
@@ -202,7 +214,7 @@ def arrays_of_names(topic: Topic) -> list[str]:
 
 
 def arrays_with_names(topic: Topic) -> dict[str, str]:
-    """The arrays of numbers whose elements have names, with the array of these.
+    """By array of numbers with named elements, the array of the names.
 
     >>> leaves = {"name[]": Kind.LABEL, "position[]": Kind.REAL}
     >>> arrays_with_names(Topic("/joints", "sensor_msgs/msg/JointState", leaves))
@@ -222,9 +234,9 @@ def arrays_with_names(topic: Topic) -> dict[str, str]:
 
 
 def by_names(path: tuple[Step, ...]) -> Get:
-    """A function that goes a path step by step, to elements by their place or their name.
+    """Make a function that follows a path step by step, to elements by index or by name.
 
-    It raises `KeyError` where a message has none of that name, which is then no update: joints of
+    It raises `KeyError` if a message has no element of a name. That is no update, as the joints of
     an arm and those of its hand often share a topic.
     """
 
@@ -252,7 +264,10 @@ def by_names(path: tuple[Step, ...]) -> Get:
 
 
 def _named(above: list[Any], elements: Sequence[Any], name: str) -> Any:
-    """The element of that name, by names beside it or beside what is above it, or by its own."""
+    """Find an element by name: by a parallel array of names, or by a field of the element.
+
+    `above`: the messages around the elements, from the outermost on.
+    """
     for holder in reversed(above):
         for key in NAMES:
             names = part_of(holder, key)
@@ -268,7 +283,7 @@ def _named(above: list[Any], elements: Sequence[Any], name: str) -> Any:
 
 
 def part_of(content: Any, name: str) -> Any:
-    """The field of a message, or of a part of one, by name; `None` if it has none."""
+    """A field of a message, or of a part of it, by name; `None` if it is missing."""
     if isinstance(content, Mapping):
         return content.get(name)
     return getattr(content, name, None)

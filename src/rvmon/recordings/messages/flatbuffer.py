@@ -1,4 +1,4 @@
-"""Messages of FlatBuffers, read by the binary schema that an MCAP file holds."""
+"""Decoder of FlatBuffers messages, by the binary schema in an MCAP file."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ _NUMBERS = {
     number: (Struct(f"<{sign}"), np.dtype(f"<{sign}"))
     for number, sign in enumerate("B?bBhHiIqQfd", 1)
 }
-"""The layout of numbers of each base type."""
+"""The layout of a number, by base type."""
 
 _BOOL, _REALS, _STRING, _VECTOR, _TABLE, _ARRAY = 2, (11, 12), 13, 14, 15, 17
-"""Base types of `reflection.fbs`, of which unions are not read."""
+"""Base types of `reflection.fbs`; unions are not supported."""
 
 _I32, _U32, _U16 = Struct("<i"), Struct("<I"), Struct("<H")
 
@@ -27,16 +27,16 @@ class _Field(msgspec.Struct, frozen=True):
     """A field of a table, or of a struct."""
 
     name: str
-    base: int  # its type
-    element: int  # the type of its elements, if it has such
-    index: int  # of the table that it, or an element, is
-    count: int  # of the elements of an array in a struct
-    offset: int  # its place in a struct, or in the table of offsets
-    default: float  # of a number that is not sent
+    base: int  # its base type
+    element: int  # the base type of the elements of a vector or array
+    index: int  # the type, in the schema's list, of a table or of elements that are tables
+    count: int  # the number of elements of an array in a struct
+    offset: int  # its offset in a struct, or in the table of offsets
+    default: float  # the value of a number that is not sent
 
 
 class _Type(msgspec.Struct, frozen=True):
-    """A table or a struct: its name, fields, and bytes, which only a struct has."""
+    """A table or a struct; `size`: bytes of a struct, 0 for a table."""
 
     name: str
     fields: tuple[_Field, ...]
@@ -44,7 +44,12 @@ class _Type(msgspec.Struct, frozen=True):
 
 
 class FlatBuffers:
-    """Decodes messages by a `.bfbs` (`flatc --binary --schema`), and the name of a table."""
+    """Decodes messages by a binary schema (`.bfbs`, `flatc --binary --schema`).
+
+    Args:
+        schema: the bytes of the schema.
+        name: the type of the messages; the root type of the schema if it has no such type.
+    """
 
     def __init__(self, schema: bytes, name: str) -> None:
         packed = _Packed(schema)
@@ -52,7 +57,7 @@ class FlatBuffers:
         self._types = [packed.type_at(place) for place in packed.tables(root, 0)]
         found = (one for one in self._types if one.name == name)
         self._root = next(found, None) or packed.type_at(packed.follow(packed.slot(root, 12)))
-        # the kinds of the fields, by their path
+        # kinds of leaf fields, by path
         self.leaves: Mapping[str, Kind] = dict(self._leaves(self._root, "", ()))
 
     def _leaves(self, of: _Type, prefix: str, above: tuple[str, ...]) -> Iterator[tuple[str, Kind]]:
@@ -68,7 +73,7 @@ class FlatBuffers:
                 yield path, {_BOOL: Kind.BOOL, _STRING: Kind.LABEL}.get(kind, real)
 
     def decode(self, data: bytes) -> Mapping[str, Any]:
-        """The fields of a message, by name; what is not sent and has no default is absent."""
+        """The fields of a message by name, without those that are not sent and have no default."""
         message = _Packed(data)
         return dict(self._values(message, message.follow(0), self._root))
 
@@ -114,30 +119,34 @@ class FlatBuffers:
 
 
 class _Packed:
-    """Bytes of a buffer: its numbers, texts and tables by their places."""
+    """A buffer, with access to its numbers, texts and tables by offset."""
 
     def __init__(self, data: bytes) -> None:
         self.data = data
         self._left = 16 * len(data)
 
     def spend(self, count: int) -> None:
-        """Count what is read: texts and tables may be used again, but not over and over."""
+        """Count bytes of texts and tables, which may be shared, but not without limit.
+
+        Raises:
+            ValueError: more than 16 times the buffer was read; it may be made to fill the memory.
+        """
         self._left -= count
         if self._left < 0:
             raise ValueError("the same is read over and over")
 
     def number(self, form: Struct, at: int) -> Any:
-        """A number."""
+        """The number at an offset."""
         if at < 0:
             raise ValueError("an offset leads out of it")
         return form.unpack_from(self.data, at)[0]
 
     def follow(self, at: int) -> int:
-        """The place that an offset leads to."""
+        """The position that the offset stored at `at` refers to."""
         return at + int(self.number(_U32, at))
 
     def slot(self, table: int, offset: int) -> int:
-        """The place of a field in a table; 0 if it has none."""
+        """The position of a field of a table; 0 if the table does not have it."""
         offsets = table - self.number(_I32, table)
         if offset >= self.number(_U16, offsets):
             return 0
@@ -145,27 +154,27 @@ class _Packed:
         return table + there if there else 0
 
     def text(self, at: int) -> str:
-        """A text."""
+        """The text at a position."""
         count = self.number(_U32, at)
         self.spend(4 + count)
         return self.data[at + 4 : at + 4 + count].decode()
 
     def tables(self, table: int, field: int) -> list[int]:
-        """The places of the tables in a vector."""
+        """The positions of the tables in a vector, which is field number `field` of a table."""
         at = self.slot(table, 4 + 2 * field)
         start = self.follow(at) if at else 0
         count = self.number(_U32, start) if at else 0
         return [self.follow(start + 4 + 4 * place) for place in range(count)]
 
     def type_at(self, at: int) -> _Type:
-        """A table, or struct, that a schema describes; see `Object` of `reflection.fbs`."""
+        """The table or struct that a schema describes; see `Object` in `reflection.fbs`."""
         is_struct = self._of(at, 2, _NUMBERS[_BOOL][0], False)
         fields = tuple(self._field_at(place) for place in self.tables(at, 1))
         name = self.text(self.follow(self.slot(at, 4)))
         return _Type(name, fields, self._of(at, 4, _I32, 0) if is_struct else 0)
 
     def _field_at(self, at: int) -> _Field:
-        """See `Field` and `Type` of `reflection.fbs`."""
+        """The field that a schema describes; see `Field` and `Type` in `reflection.fbs`."""
         of = self.follow(self.slot(at, 6))
         base, element = (self._of(of, number, _NUMBERS[3][0], 0) for number in (0, 1))
         real = self._of(at, 5, _NUMBERS[12][0], 0.0)

@@ -1,4 +1,7 @@
-"""Arrays in HDF5 and MATLAB files; needs h5py, for older files of MATLAB scipy: the extra `h5`."""
+"""Reader of arrays in HDF5 and MATLAB files; needs h5py, or scipy for older MATLAB files.
+
+Both are in the extra `h5`.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +24,7 @@ _FORM = "a file of arrays"
 _MAGIC = b"\x89HDF\r\n\x1a\n"
 
 _TIMES = ("t", "time", "timestamp", "timestamps", "t_ns", "time_ns", "timestamp_ns", "tout")
-"""The names of arrays of stamps."""
+"""The usual names of arrays of stamps."""
 
 _UNITS = {"seconds": "s", "sec": "s", "milliseconds": "ms", "microseconds": "us", "µs": "us"}
 
@@ -32,7 +35,7 @@ class _Array(column_topics.LateColumn):
     def __init__(
         self, read: Callable[[], Any], shape: tuple[int, ...], dtype: Any, unit: str = ""
     ) -> None:
-        # An array of a single row or column is a list.
+        # An array of a single row or column is one-dimensional here.
         is_list = len(shape) == 2 and 1 in shape
         self.shape = (max(shape),) if is_list else shape
         super().__init__(
@@ -48,9 +51,17 @@ _Tree = dict[str, Any]  # arrays, and trees of them, by name
 
 
 def array_messages(path: Path, stamps: Stamps | None) -> column_topics.ColumnMessages:
-    """Open a file: each group, or structure, that has stamps is a topic.
+    """Open a file, in which each group or structure with an array of stamps is a topic.
 
-    `stamps`: the array of stamps, as `group/name`; `None`: what is called so in each group.
+    Args:
+        path: the file.
+        stamps: the array of stamps, as `group/name`; `None`: the array with a usual name in each
+            group.
+
+    Raises:
+        TraceError: the file cannot be read, or has no array of stamps.
+        RvmonError: a package is not installed.
+        OSError: the file cannot be opened.
     """
     with open(path, "rb") as file:
         head = file.read(520)
@@ -77,7 +88,7 @@ def array_messages(path: Path, stamps: Stamps | None) -> column_topics.ColumnMes
 
 
 def _hierarchy(path: Path) -> tuple[_Tree, Callable[[], object]]:
-    """The groups of an HDF5 file; those of MATLAB have their axes the other way round."""
+    """The groups of an HDF5 file, and the function that closes it; MATLAB's axes are reversed."""
     with needed("HDF5", "h5py"):
         import h5py
     with errors_as_damage(_FORM):
@@ -106,7 +117,7 @@ def _hierarchy(path: Path) -> tuple[_Tree, Callable[[], object]]:
 
 
 def _matrices(path: Path) -> _Tree:
-    """The variables of a MATLAB file before version 7.3."""
+    """The variables of a MATLAB file of a version before 7.3, which is no HDF5 file."""
     with needed("a file of MATLAB", "scipy"):
         from scipy.io import loadmat
     with errors_as_damage(_FORM):
@@ -140,7 +151,7 @@ def _listed(tree: _Tree, prefix: str) -> Iterator[tuple[str, _Array]]:
 
 
 def _topics(tree: _Tree, place: str, stamps: Stamps | None) -> Iterator[column_topics.ColumnTopic]:
-    """A topic for each group with stamps; groups in it without any are part of it."""
+    """Yield a topic for each group with stamps; inner groups without stamps belong to it."""
     own = {name: array for name, array in tree.items() if isinstance(array, _Array)}
     for name, array in own.items():
         is_named = stamps is not None and stamps.column.strip("/") == f"{place}{name}"
@@ -174,12 +185,12 @@ def _topic(tree: _Tree, place: str, time: str, stamps: Stamps | None) -> column_
 
 
 def _within(tree: _Tree) -> Iterator[tuple[str, _Array]]:
-    """The arrays of a group and of groups in it that have no stamps of their own."""
+    """Yield the arrays of a group, and of inner groups without stamps of their own."""
     for name, inner in tree.items():
         if isinstance(inner, _Array):
             yield name, inner
         elif not any(one.lower() in _TIMES for one in inner):
-            # The values of a signal of Simulink are called `values`, all of them.
+            # In Simulink's structures the array of every signal is called `values`.
             yield from (
                 (name if one == "values" else f"{name}_{one}", array)
                 for one, array in _within(inner)

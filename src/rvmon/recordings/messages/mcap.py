@@ -1,4 +1,4 @@
-"""MCAP files: those of ROS 2 by rosbags, others by mcap, the extra `mcap`."""
+"""Reader of MCAP files: those of ROS 2 by rosbags, others by mcap, the extra `mcap`."""
 
 from __future__ import annotations
 
@@ -26,18 +26,24 @@ from rvmon.trace.schema import Kind
 _MAGIC = b"\x89MCAP0\r\n"
 
 _FOOTER = Struct("<BQQQI8s")
-"""Opcode, length, where the summary and its offsets begin, their checksum, the magic."""
+"""Opcode, length, offsets of the summary and of its offset section, their checksum, the magic."""
 
-_BEFORE_SUM = 25  # bytes of the footer that the checksum is of, too
+_BEFORE_SUM = 25  # bytes of the footer before the checksum, which it covers, too
 
 Decode = Callable[[bytes], Any]
 
 _ROS = {"ros1msg": ("msg", True), "ros2msg": ("msg", False), "ros2idl": ("idl", False)}
-"""By the encoding of a schema the language of the definition, and whether it is of ROS 1."""
+"""By encoding of a schema, the language of the definition, and whether it is of ROS 1."""
 
 
 def mcap_messages(path: Path, definitions: Mapping[str, str]) -> Messages:
-    """Open a file; it may lack definitions of messages of ROS."""
+    """Open a file; `definitions` has ROS definitions (text by type) that the file may lack.
+
+    Raises:
+        TraceError: the file is no MCAP file, or damaged.
+        RvmonError: a package is not installed.
+        OSError: the file cannot be opened.
+    """
     with open(path, "rb") as file:
         head = file.read(64)
     if not head:
@@ -45,7 +51,7 @@ def mcap_messages(path: Path, definitions: Mapping[str, str]) -> Messages:
     if not head.startswith(_MAGIC):
         raise TraceError("is no MCAP file: it begins otherwise")
     _refuse_damaged_summary(path)
-    # Behind the magic: one byte, the length in eight, and the profile, led by its length in four.
+    # After the magic: opcode (1 byte), length (8), length of the profile (4), the profile.
     if head[17:21] == b"\4\0\0\0" and head[21:25] == b"ros2":
         found = BagMessages(path, "ros2", definitions)
         if all(not topic.fault for topic in found.topics.values()):
@@ -55,7 +61,10 @@ def mcap_messages(path: Path, definitions: Mapping[str, str]) -> Messages:
 
 
 def _refuse_damaged_summary(path: Path) -> None:
-    """Refuse a file whose times and counts are not what their checksum says: no reader looks."""
+    """Raise `TraceError` if the summary (times and counts) does not match its checksum.
+
+    The libraries do not check it.
+    """
     with open(path, "rb") as file:
         footer = max(0, file.seek(0, SEEK_END) - _FOOTER.size)
         file.seek(footer)
@@ -64,7 +73,7 @@ def _refuse_damaged_summary(path: Path) -> None:
             return
         opcode, length, start, _, expected, _ = _FOOTER.unpack(tail)
         if (opcode, length) != (2, 20) or not 0 < start <= footer or expected == 0:
-            return  # it is cut, which others tell; or it has none
+            return  # the file has no checksum, or is cut off, which reading reports
         file.seek(start)
         summary = file.read(footer + _BEFORE_SUM - start)
     if crc32(summary) != expected:
@@ -72,14 +81,18 @@ def _refuse_damaged_summary(path: Path) -> None:
 
 
 def mcap_reader(file: BinaryIO) -> Any:
-    """A reader of an open MCAP file of any encodings."""
+    """The library's reader of an open MCAP file, for any encodings.
+
+    Raises:
+        RvmonError: mcap is not installed.
+    """
     with needed("MCAP", "mcap"):
         from mcap.reader import NonSeekingReader, SeekingReader
 
     class Reader(SeekingReader):
-        """A reader that does not trust an index that lacks something, and compares checksums.
+        """A reader that ignores incomplete summaries, and always compares checksums.
 
-        The library does not where a file has no chunks that are listed.
+        The library does not compare them in files without an index of chunks.
         """
 
         def get_summary(self) -> Any:
@@ -97,7 +110,7 @@ def mcap_reader(file: BinaryIO) -> Any:
 
 
 def _is_complete(summary: Any) -> bool:
-    """Whether a summary has the channels, and the schemas, of all messages that it counts."""
+    """Whether a summary has the channels and schemas of all messages that it counts."""
     counted = {one for chunk in summary.chunk_indexes for one in chunk.message_index_offsets}
     if summary.statistics is not None:
         counted |= summary.statistics.channel_message_counts.keys()
@@ -106,7 +119,7 @@ def _is_complete(summary: Any) -> bool:
 
 
 class _OtherMessages(Messages):
-    """An open MCAP file of any encodings; see `mcap_messages`."""
+    """An open MCAP file with messages of any encodings; see `mcap_messages`."""
 
     def __init__(self, path: Path, definitions: Mapping[str, str]) -> None:
         self._definitions = definitions
@@ -120,10 +133,10 @@ class _OtherMessages(Messages):
             raise
 
     def _look(self) -> None:
-        """Find the topics, by all messages where the file has no index of them."""
+        """Find the topics in the summary, or in all messages if there is none."""
         summary = self._reader.get_summary()
         statistics = None if summary is None else summary.statistics
-        self._counted: Counter[str] = Counter()  # by topic, as the file says itself
+        self._counted: Counter[str] = Counter()  # messages by topic, as the file counts them
         if summary is not None and statistics is not None:
             channels = [
                 (summary.schemas.get(channel.schema_id), channel)
@@ -145,7 +158,7 @@ class _OtherMessages(Messages):
         self.topics = by_name(topic for topic, _ in made.values())
 
     def _topic(self, schema: Any, channel: Any) -> tuple[Topic, Decode]:
-        """A topic, and what decodes its messages."""
+        """The topic of a channel, and the function that decodes its messages."""
         name, encoding = channel.topic, channel.message_encoding
         type_name = schema.name if schema is not None else "no type"
         language = schema.encoding if schema is not None else ""
@@ -166,7 +179,7 @@ class _OtherMessages(Messages):
         if encoding == "flatbuffer" and language == "flatbuffer":
             try:
                 buffers = FlatBuffers(schema.data, type_name)
-            except Exception as error:  # noqa: BLE001 - it may lead anywhere
+            except Exception as error:  # noqa: BLE001 - a damaged schema may raise anything
                 fault = f"its binary schema cannot be read ({first_line(error)})"
                 return Topic(name, type_name, {}, fault), bytes
             return Topic(name, type_name, buffers.leaves), buffers.decode
@@ -177,9 +190,9 @@ class _OtherMessages(Messages):
     def _object_leaves(
         self, schema: Any, topic: str, decode: Decode
     ) -> Iterator[tuple[str, Kind | None]]:
-        """The fields that the first message has, and those that the schema declares.
+        """Yield the fields of the first message, and those that the schema declares.
 
-        What is wrong with them does not matter unless the topic is read.
+        Errors in them are ignored here: they matter only if the topic is read.
         """
         first = next(iter(self._reader.iter_messages(topics=[topic])), None)
         with suppress(TraceError, msgspec.DecodeError):
@@ -191,7 +204,7 @@ class _OtherMessages(Messages):
                 yield from _described_leaves(described, "", 0)
 
     def read(self, topics: Collection[str]) -> Iterator[Message]:
-        """The messages of these topics, in the order in which they were recorded."""
+        """Yield the messages of these topics in order of log stamps."""
         found = 0
         with mcap_errors():
             for _, channel, message in self._reader.iter_messages(topics=list(topics)):
@@ -200,7 +213,7 @@ class _OtherMessages(Messages):
                     content = self._decoders[channel.id](message.data)
                 except MemoryError:
                     raise
-                except Exception as error:  # noqa: BLE001 - each decoder has errors of its own
+                except Exception as error:  # noqa: BLE001 - each decoder has its own exceptions
                     raise TraceError(
                         f"a message of {channel.topic} at {message.log_time} ns cannot be decoded "
                         f"({first_line(error)})"
@@ -214,7 +227,7 @@ class _OtherMessages(Messages):
 
 
 def mcap_errors() -> AbstractContextManager[None]:
-    """Turns errors of the library into those of the file."""
+    """Turn errors of the library into `TraceError`, with advice for an MCAP file."""
     return errors_as_damage("MCAP", "is it cut off? Copy it again, or try `mcap recover`")
 
 
@@ -252,13 +265,13 @@ def _object(decode: Decode, data: bytes) -> Mapping[str, Any]:
 
 _DESCRIBED = dict(zip(("boolean", "integer", "number", "string"), Kind, strict=True))
 
-_DEEPEST = 20  # schemas nested more deeply are not followed
+_DEEPEST = 20  # deeper levels of a schema are ignored
 
 
 def _described_leaves(
     schema: Mapping[str, Any], path: str, depth: int
 ) -> Iterator[tuple[str, Kind]]:
-    """The fields of a JSON schema; references are not followed."""
+    """Yield path and kind of each field in a JSON schema; references are not followed."""
     form = schema.get("type")
     if isinstance(form, str) and form in _DESCRIBED:
         yield path, _DESCRIBED[form]
@@ -274,11 +287,11 @@ def _described_leaves(
 
 
 _FOUND = {bool: Kind.BOOL, int: Kind.REAL, float: Kind.REAL, str: Kind.LABEL}
-"""The kinds of values; a number without decimals may have some in the next message."""
+"""The kinds of values; an integer counts as real, as the next message may have decimals."""
 
 
 def _found_leaves(value: Any, path: str) -> Iterator[tuple[str, Kind | None]]:
-    """The fields of a message; of one that is null, or an empty array, the kind is not known."""
+    """Yield path and kind of each field of a message; `None` for null and for empty arrays."""
     if isinstance(value, dict):
         for name, inner in value.items():
             yield from _found_leaves(inner, f"{path}.{name}".lstrip("."))

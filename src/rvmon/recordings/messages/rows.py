@@ -1,4 +1,4 @@
-"""Messages as rows: what each says of the declared names; whether clocks of senders agree."""
+"""Conversion of messages to rows of declared names, and a check of the senders' clocks."""
 
 from __future__ import annotations
 
@@ -22,15 +22,19 @@ from rvmon.trace.time import format_ticks, whole_ticks
 _ABSENT = object()
 
 Take = Callable[[Any, dict[str, Value]], object]
-"""Puts what a content says of a name among the values."""
+"""Adds the value that a message's content has for a name to the values of a row."""
 
 
 def message_rows(
     source: Messages, bounds: Mapping[str, Bound], schema: Schema, skew: Skew, *, ordered: bool
 ) -> Iterator[Row]:
-    """Number of the message, ticks and values of each message that is read.
+    """Yield a row of number, ticks and values for each message that feeds a declared name.
 
-    Where stamps of headers count, messages are sorted by time in memory, unless they may be late.
+    A message that feeds names with different clocks gives a row for each clock. If header stamps
+    are used, all rows are sorted by time in memory, unless late samples are allowed.
+
+    Raises:
+        TraceError: a message cannot be read; the error says which one, and its topic.
     """
     rows = _rows(source, bounds, schema, skew)
     clock = schema.binding.clock
@@ -57,7 +61,7 @@ def _rows(
 
 
 class MessageReaders:
-    """The readers of messages by topic, each made for its first message."""
+    """Readers of messages by topic, made when the first message of a topic comes."""
 
     def __init__(self, bounds: Mapping[str, Bound], schema: Schema) -> None:
         self._schema = schema
@@ -69,7 +73,7 @@ class MessageReaders:
     def take(
         self, topic: Topic, logged: int, content: Any
     ) -> Iterator[tuple[int, dict[str, Value]]]:
-        """The values of a message with its stamp, by each clock; `logged`: when it came."""
+        """Yield stamp (ticks) and values of a message for each clock; `logged`: its log stamp."""
         made = self._made.get(topic.name)
         if made is None:
             made = self._made[topic.name] = self._make(topic)
@@ -141,7 +145,7 @@ def _event(name: str, bound: Bound, schema: Schema) -> Take:
 def _reader(
     name: str, term: Term, kind: Kind, labels: Mapping[str, str], gaps: Gaps
 ) -> Callable[[Any], Any]:
-    """A function from a message to a value of the kind, `None` if unknown, or `_ABSENT`."""
+    """A function from a message to a value of the kind, `None` (unknown) or `_ABSENT`."""
     get = getter(term)
 
     def read(content: Any) -> Any:
@@ -165,33 +169,33 @@ def _reader(
 
 
 AHEAD = 1_000_000
-"""Ticks by which a header may be later than the log: as far as clocks that are set by a network
-differ."""
+"""Ticks by which a header may be later than the log, as clocks set over a network differ by that
+much."""
 
 APART = 100_000_000  # ticks by which the least differences of two topics may differ
 
 DRIFT = 20_000_000
 """Ticks by which the least difference may change from the first messages to the last."""
 
-SOME = 100  # messages of which the least difference is taken at the beginning and at the end
-ENOUGH = 10  # messages that say something about a clock
+SOME = 100  # messages in a lot, of which the least difference is taken
+ENOUGH = 10  # with fewer messages nothing can be said about a clock
 
 
 class Differences(Struct):
-    """The delays between the headers of a topic's messages and their recording, in ticks."""
+    """The differences between log and header stamps of a topic's messages, in ticks."""
 
-    stamp: Callable[[Any], int] | None  # of a message; `None`: they have no header
-    count: int = 0  # of messages with one
-    first: int = 0  # the instant at which the first was recorded
-    # the least difference of each `SOME` messages, in order
+    stamp: Callable[[Any], int] | None  # gives the header stamp; `None`: there is no header
+    count: int = 0  # of messages with a header stamp
+    first: int = 0  # the log stamp of the first of these, ticks
+    # the least difference in each lot of `SOME` messages, in order
     lots: list[int] = field(default_factory=list)
 
     def note(self, logged: int, content: Any) -> None:
-        """Take a message; a header that nobody has filled in, which is zero, says nothing."""
+        """Take a message; a header stamp of zero was not filled in, and is ignored."""
         try:
             stamp = self.stamp(content) if self.stamp is not None else 0
         except (KeyError, TypeError, ValueError, OverflowError):
-            return  # where headers count, whoever reads them says what is wrong with them
+            return  # where header stamps are used, reading the message reports the error
         if not stamp:
             return
         if not self.count:
@@ -203,19 +207,19 @@ class Differences(Struct):
 
     @property
     def change(self) -> int:
-        """From the first messages to the last; 0 if they are too few to say."""
+        """The change of the least difference from the first lot to the last; 0 for few messages."""
         if self.count < 2 * SOME:
             return 0
-        is_begun = 0 < self.count % SOME < ENOUGH
+        is_begun = 0 < self.count % SOME < ENOUGH  # the last lot has too few messages yet
         return self.lots[-2 if is_begun else -1] - self.lots[0]
 
 
 class Skew(Struct):
-    """The differences of all topics that are read.
+    """The differences between log and header stamps of all topics that are read.
 
-    A header says when its sender stamped a message, the log when it arrived: the difference is the
-    message's time on its way, which is never negative, and how far the two clocks are apart. The
-    least difference of many messages is mostly the second.
+    The sender stamps the header, the recorder the log. The difference is the sum of the transport
+    delay, which is never negative, and the offset of the two clocks. Over many messages the least
+    delay is small, so the least difference is close to the offset.
     """
 
     by_topic: dict[str, Differences] = field(default_factory=dict)

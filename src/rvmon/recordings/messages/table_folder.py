@@ -1,6 +1,6 @@
-"""A folder of tables that are one recording: a CSV file per topic, joined by time.
+"""Reader of a folder of tables that form one recording: a CSV file per topic, joined by time.
 
-A file `topics.toml` in it says so; it may be empty.
+The file `topics.toml` marks such a folder; it may be empty.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ from rvmon.trace.schema import Kind, Schema, Stamps
 from rvmon.trace.stamps import stamps_of, ticks_of_cell
 from rvmon.trace.time import format_ticks
 
-_LOOKED_AT = 1000  # rows that say of which kind the columns are
+_LOOKED_AT = 1000  # rows that decide on the kinds of columns
 
 _WHOLE = re.compile(r"[+-]?\d{1,18}", re.ASCII)
 _PATH = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*(\[\d{1,4}\])?")
 
 
 class _Table(Struct, frozen=True):
-    """A file: what it holds, and of which kinds the columns may be that are no stamps."""
+    """A file of a folder; `kinds`: by column except the stamps, the possible kinds."""
 
     path: Path
     type: str
@@ -47,7 +47,7 @@ class _Table(Struct, frozen=True):
 
 
 class TableMessages(Messages):
-    """An open folder."""
+    """An open folder of tables."""
 
     def __init__(self, folder: Path) -> None:
         self._tables = {name: _looked_over(table) for name, table in _tables(folder)}
@@ -63,13 +63,17 @@ class TableMessages(Messages):
         }
 
     def read(self, topics: Collection[str]) -> Iterator[Message]:
-        """The rows of these files, by time; those of one instant as the files are called."""
+        """Yield the rows of these topics by time; at one instant, in the order of the files."""
         rows = [_rows(name, table) for name, table in self._tables.items() if name in topics]
         yield from merge(*rows, key=lambda row: row[1])
 
 
 def _tables(folder: Path) -> Iterator[tuple[str, _Table]]:
-    """The files by topic, as `topics.toml` says, or all of them."""
+    """Yield topics with their files: those that `topics.toml` lists, or else all CSV files.
+
+    Raises:
+        TraceError: `topics.toml` is malformed, or there is no table.
+    """
     place = folder / TOPICS
     try:
         content = tomllib.loads(text_of_file(place))
@@ -103,7 +107,7 @@ def _expect(table: Mapping[str, Any], known: Sequence[str], place: Path) -> None
 
 @contextmanager
 def _lines(table: _Table) -> Iterator[Iterator[tuple[int, list[str]]]]:
-    """The lines of a file, split, up to one that has no end; errors inside name it."""
+    """Open a file as an iterator of line numbers and rows; errors inside name the file."""
     with (
         named_errors(table.path),
         opened_as_csv(table.path, table.stamps) as (plain, _),
@@ -113,7 +117,11 @@ def _lines(table: _Table) -> Iterator[Iterator[tuple[int, list[str]]]]:
 
 
 def _ended(copied: CopiedLines) -> Iterator[tuple[int, list[str]]]:
-    """The lines, split: what lacks its end may be half a line."""
+    """Yield line numbers and rows.
+
+    Raises:
+        TraceError: the last line has no end, so that the file may have been cut off in it.
+    """
     for line, row in split_lines(copied):
         if not copied.taken().endswith(("\n", "\r")):
             raise TraceError(f"line {line}: it has no end: was it cut off? If not, end the line")
@@ -143,7 +151,7 @@ def _looked_over(table: _Table) -> _Table:
 
 
 def _kinds(cells: Sequence[str]) -> Sequence[Kind]:
-    """The kinds of which a column may be; the likely one comes first."""
+    """The possible kinds of a column, the most likely one first."""
     if not cells:
         return (Kind.REAL, *Kind)
     if all(_WHOLE.fullmatch(cell) for cell in cells):
@@ -156,19 +164,19 @@ def _kinds(cells: Sequence[str]) -> Sequence[Kind]:
 def _number(cell: str) -> float | None:
     try:
         return int(cell) if _WHOLE.fullmatch(cell) else double_of(cell.replace("_", "?"))
-    except TraceError:  # it is too large for one
+    except TraceError:  # the number is too large
         raise
     except ValueError:
         return None
 
 
 def _leaf(column: str) -> str:
-    """The path of a column; `q[0]` is an element of the array `q`."""
+    """The path of the field of a column; column `q[0]` is an element of the array `q[]`."""
     return re.sub(r"\[\d+\]$", "[]", column)
 
 
 def _fault(columns: Collection[str]) -> str:
-    """Two columns of which one would be in the other, `q[0]` in `q`, as a fault; empty: none."""
+    """The fault of a table in which one column would be inside another, as `q[0]` in `q`; or ""."""
     for column in columns:
         above = column.partition("[")[0] if "[" in column else column.rpartition(".")[0]
         while above:
@@ -179,7 +187,11 @@ def _fault(columns: Collection[str]) -> str:
 
 
 def _rows(name: str, table: _Table) -> Iterator[Message]:
-    """The rows of a file as messages: what a row leaves empty is not in it."""
+    """Yield the rows of a file as messages; a message lacks the fields of empty cells.
+
+    Raises:
+        TraceError: with file and line: a row is malformed, or time goes backwards.
+    """
     with _lines(table) as rows:
         header, stamps = _header(table, rows)
         time = header.index(stamps.column)
@@ -216,7 +228,7 @@ def _put(content: dict[str, Any], steps: Sequence[str], element: int | None, val
         inner[steps[-1]] = value
         return
     array: list[Any] = inner.setdefault(steps[-1], [])
-    array += [math.nan] * (element + 1 - len(array))  # of an array that is there all are given
+    array += [math.nan] * (element + 1 - len(array))  # elements without a cell are NaN
     array[element] = value
 
 

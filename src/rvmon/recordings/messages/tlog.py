@@ -1,4 +1,4 @@
-"""Telemetry of MAVLink (`.tlog`); needs pymavlink, the extra `mavlink`."""
+"""Reader of MAVLink telemetry (`.tlog`); needs pymavlink, the extra `mavlink`."""
 
 from __future__ import annotations
 
@@ -21,15 +21,16 @@ _STAMP = 8  # bytes before each packet: microseconds since 1970
 _MAGIC_1, _MAGIC_2 = 0xFE, 0xFD
 _IS_SIGNED = 1
 _Key = tuple[int, int, int, int]
-"""A message, its system and component, and what its checksum says of its definition."""
+"""Message number, system, component, and extra byte of the definition, which the checksum reveals
+(or `_OURS`)."""
 
-_OURS = -1  # marks a message whose checksum agrees with its definition in the known dialect
-_FAR = 3 * 24 * 3600 * 1_000_000  # microseconds: a stamp so far from the one before is none
+_OURS = -1  # the checksum agrees with the definition in the known dialect
+_FAR = 3 * 24 * 3600 * 1_000_000  # microseconds; a stamp this far from the one before is invalid
 _MOST = TIME_LIMIT // 1_000  # microseconds
 
 
 class TelemetryMessages(Messages):
-    """An open recording of telemetry, gone through once for the place of each packet."""
+    """An open recording of telemetry; opening it reads it once to find all packets."""
 
     def __init__(self, path: Path) -> None:
         with needed("telemetry of MAVLink", "pymavlink"):
@@ -37,7 +38,7 @@ class TelemetryMessages(Messages):
             from pymavlink.dialects.v20 import ardupilotmega
         self._dialect, self._first = ardupilotmega, first
         self._data = path.read_bytes()
-        self.outages: list[Outage] = []  # the stretches without a packet of a valid checksum
+        self.outages: list[Outage] = []  # where no packet has a valid checksum
         self._times, self._places, self._senders = array("q"), array("q"), array("q")
         self._keys: dict[_Key, int] = {}
         self._lost: set[_Key] = set()
@@ -45,7 +46,7 @@ class TelemetryMessages(Messages):
         if not self._times:
             raise TraceError("holds no packet of MAVLink: is it telemetry?")
         self.count = len(self._times)  # of all packets
-        # the last stamp
+        # the last instant of packets and outages, ticks
         self.end = max(max(self._times), max((outage.until for outage in self.outages), default=0))
         senders = Counter(self._called(key) for key in self._keys if key not in self._lost)
         self._names = []
@@ -53,7 +54,7 @@ class TelemetryMessages(Messages):
             name = "" if key in self._lost else self._called(key)
             sender = f"/sys{key[1]}_comp{key[2]}" if senders[name] > 1 else ""
             self._names.append(name and f"{sender}/{name}")
-        # by name, one a message and sender; the name says the sender where several send it
+        # by name, one topic per message and sender; the name has the sender if there are several
         self.topics = {
             name: self._topic(name, key)
             for name, key in zip(self._names, self._keys, strict=True)
@@ -84,9 +85,9 @@ class TelemetryMessages(Messages):
             self.outages.append(Outage(end, end + 1, "it ends within a packet"))
 
     def _lose_strangers(self) -> None:
-        """A packet that fits another definition, as no second one does, may be one that is damaged.
+        """Turn a lone packet that fits no known definition into an outage: it may be damaged.
 
-        Dialects that are not ours send theirs again and again.
+        Other dialects send their messages repeatedly, so that several packets agree.
         """
         agreeing: Counter[tuple[int, int]] = Counter()
         for (message, _, _, extra), sender in self._keys.items():
@@ -101,13 +102,13 @@ class TelemetryMessages(Messages):
         self.outages.sort(key=lambda outage: outage.since)
 
     def _lose(self, place: int, last: int, micros: int) -> None:
-        # What was lost may have had the stamp of its neighbour.
+        # A lost packet may have had the stamp of the packet before it.
         since = last * 1_000 if last >= 0 else micros * 1_000 - 1
         until = max(since, micros * 1_000)
         self.outages.append(Outage(since, until, f"there is no packet at byte {place:,}"))
 
     def _packet_at(self, place: int) -> tuple[int, _Key] | None:
-        """The size of the packet behind a stamp, and what it is; `None`: none is."""
+        """The size and the key of the packet at a stamp's place; `None`: there is none."""
         data, start = self._data, place + _STAMP
         head = data[start : start + 10]
         if len(head) < 8 or head[0] not in (_MAGIC_1, _MAGIC_2):
@@ -130,7 +131,7 @@ class TelemetryMessages(Messages):
         return header + head[1] + 2 + signature, (number, system, component, extra)
 
     def _extra(self, number: int, body: bytes, checksum: bytes) -> int | None:
-        """The byte of the definition that the checksum is of, too; `None`: it is of none."""
+        """The extra byte of the definition that the checksum covers; `None`: no byte fits."""
         expected = int.from_bytes(checksum, "little")
         known, sum_of = self._dialect.mavlink_map.get(number), self._dialect.x25crc
         if known is not None and sum_of(body + bytes([known.crc_extra])).crc == expected:
@@ -165,7 +166,7 @@ class TelemetryMessages(Messages):
         return Topic(name, known.msgname, leaves, units=known.fieldunits_by_name)
 
     def read(self, topics: Collection[str]) -> Iterator[Message]:
-        """The packets of these topics by time."""
+        """Yield the packets of these topics in order of their stamps."""
         wanted = [place for place, name in enumerate(self._names) if name in topics]
         times, senders = np.asarray(self._times), np.asarray(self._senders)
         chosen = np.flatnonzero(np.isin(senders, wanted))
@@ -179,9 +180,9 @@ class TelemetryMessages(Messages):
             yield self._names[sender], self._times[one], readers[sender](self._places[one])
 
     def _reader(self, number: int) -> Callable[[int], Mapping[str, Any]]:
-        """A function from the place of a packet with a valid checksum to its fields.
+        """Make a function from the offset of a valid packet to its fields by name.
 
-        Zeros at the end of a packet are not sent. Version 1 of MAVLink knows no extensions.
+        Trailing zeros of a packet are not sent. Packets of MAVLink 1 have no extension fields.
         """
         known = self._dialect.mavlink_map[number]
         first = self._first.mavlink_map.get(number, known)

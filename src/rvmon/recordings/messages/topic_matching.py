@@ -1,4 +1,4 @@
-"""Which topics of a recording feed the declared names."""
+"""Matching of declared names with the topics and fields of a recording."""
 
 from __future__ import annotations
 
@@ -17,19 +17,20 @@ from rvmon.trace.schema import Bound, Field, Kind, Schema, Term
 def matched(
     schema: Schema, topics: Mapping[str, Topic]
 ) -> tuple[Mapping[str, Bound], tuple[str, ...]]:
-    """Find what feeds the declared names.
+    """Find the topic and field that feed each declared name.
 
-    A column that somebody named counts before the binding, and that before the name itself: `a.b.c`
-    is the field `c` of the topic `/a/b`, or `b.c` of `/a`, or the element named `c` of its array
-    `b`; a topic with one field, which is no array and not of the header, is that field.
+    A column that the user mapped takes precedence over the binding, and the binding over the name
+    itself. The name `a.b.c` means field `c` of topic `/a/b`, or field `b.c` of `/a`, or the element
+    named `c` of the array `b` of `/a`. The name of a topic means its only field, if just one field
+    is neither an array nor in the header.
 
     Returns:
-        The sources by declared name, of which the topic is there; the topics and fields that feed
-        nothing.
+        The sources by declared name, for topics that the recording has; and the topics and fields
+        that feed no name.
 
     Raises:
-        TraceError: a topic has not the field that is bound, or it is of another kind; or its
-            messages cannot be read.
+        TraceError: a topic lacks the bound field, or the field is of another kind or unit, or the
+            topic's messages cannot be read.
     """
     columns = _columns(topics)
     bounds: dict[str, Bound] = {}
@@ -49,7 +50,11 @@ def matched(
 
 
 def _topic_like(name: str, pattern: str, schema: Schema, topics: Mapping[str, Topic]) -> str:
-    """The one topic that a pattern stands for, or the pattern itself if there is none."""
+    """The only topic that matches a pattern with `*`, or the pattern itself if none does.
+
+    Raises:
+        TraceError: several topics match, and the binding names no robot.
+    """
     if schema.binding.robot:
         return pattern.replace("*", schema.binding.robot)
     like = re.escape(pattern).replace(r"\*", "[^/]+")
@@ -64,7 +69,10 @@ def _topic_like(name: str, pattern: str, schema: Schema, topics: Mapping[str, To
 
 
 def _columns(topics: Mapping[str, Topic]) -> dict[str, tuple[str, Field | None]]:
-    """The topics, and their fields that are no elements of arrays, as `TOPIC.FIELD`."""
+    """Topic and field by name: `TOPIC` with its only field or `None`, and `TOPIC.FIELD`.
+
+    Elements of arrays are left out.
+    """
     found: dict[str, tuple[str, Field | None]] = {}
     for topic in topics.values():
         leaves = [leaf for leaf in topic.leaves if "[" not in leaf]
@@ -108,7 +116,7 @@ def _by_name(
 
 
 def _element(name: str, topics: Mapping[str, Topic]) -> tuple[str, Field | None] | None:
-    """The element `c` of the array `/a.b`, whose names stand beside it, of the name `a.b.c`."""
+    """The array element that a name means: for `a.b.c`, element `c` of the array `b` of `/a`."""
     for topic in topics.values():
         for array in arrays_with_names(topic):
             prefix = f"{dotted(topic.name)}.{array}."
@@ -118,7 +126,7 @@ def _element(name: str, topics: Mapping[str, Topic]) -> tuple[str, Field | None]
 
 
 def dotted(column: str) -> str:
-    """A topic or field as a name of a specification.
+    """A topic or field, written as a name in a specification.
 
     >>> dotted("/base/odom.twist.linear.x")
     'base.odom.twist.linear.x'
@@ -129,7 +137,7 @@ def dotted(column: str) -> str:
 def _place(
     column: str, columns: Mapping[str, tuple[str, Field | None]], topics: Mapping[str, Topic]
 ) -> tuple[str, Field | None] | None:
-    """The topic and field that a person named; also an element of an array."""
+    """The topic and field that a user named, maybe an array element; `None`: there is none."""
     if column in columns:
         return columns[column]
     for topic in sorted(topics, key=len, reverse=True):

@@ -1,4 +1,4 @@
-"""The pose of one frame in another, composed of the transforms that a robot sends."""
+"""Poses of one frame in another, composed of the transforms that a robot sends."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ _Quaternion = tuple[float, float, float, float]
 
 
 class Transform(Struct, frozen=True):
-    """A turn, then a shift."""
+    """A rotation followed by a translation: the pose of a frame in its parent."""
 
-    shift: _Vector = (0.0, 0.0, 0.0)  # x, y, z
-    turn: _Quaternion = (0.0, 0.0, 0.0, 1.0)  # a quaternion of length 1: x, y, z, w
+    shift: _Vector = (0.0, 0.0, 0.0)  # translation: x, y, z
+    turn: _Quaternion = (0.0, 0.0, 0.0, 1.0)  # rotation, a quaternion of length 1: x, y, z, w
 
     def then(self, inner: Transform) -> Transform:
-        """A transform within this one, seen from outside."""
+        """The composition with a transform inside this frame, seen from the parent."""
         x, y, z = self._turned(inner.shift)
         shift = (self.shift[0] + x, self.shift[1] + y, self.shift[2] + z)
         return Transform(shift, _product(self.turn, inner.turn))
 
     def back(self) -> Transform:
-        """The way back.
+        """The inverse transform.
 
         >>> Transform((1.0, 2.0, 0.0)).back().shift
         (-1.0, -2.0, -0.0)
@@ -49,7 +49,7 @@ class Transform(Struct, frozen=True):
     def _turned(self, vector: _Vector) -> _Vector:
         x, y, z, w = self.turn
         a, b, c = vector
-        # Twice the cross product of the axis and the vector.
+        # Twice the cross product of the quaternion's vector part and the vector.
         p, q, r = 2 * (y * c - z * b), 2 * (z * a - x * c), 2 * (x * b - y * a)
         return a + w * p + y * r - z * q, b + w * q + z * p - x * r, c + w * r + x * q - y * p
 
@@ -66,10 +66,10 @@ def _product(a: _Quaternion, b: _Quaternion) -> _Quaternion:
 
 
 class WithTransforms(Messages):
-    """A recording with a topic more for each pair of frames that somebody asks for.
+    """A recording with an additional topic for each requested pair of frames.
 
-    `/tf/map/base_link` says where `base_link` is in `map`, with each message that changes a part
-    of the way between them, by what was last heard of the others.
+    `/tf/map/base_link` has the pose of `base_link` in `map`. It has a message whenever a transform
+    on the path between the two frames is sent, using the last known transforms of the others.
     """
 
     def __init__(self, source: Messages, pairs: Iterable[tuple[str, str]]) -> None:
@@ -80,7 +80,7 @@ class WithTransforms(Messages):
         self.end, self.count, self.outages = source.end, source.count, source.outages
 
     def read(self, topics: Collection[str]) -> Iterator[Message]:
-        """The messages of these topics, as they were recorded."""
+        """Yield the messages of these topics, recorded and computed, in order of log stamps."""
         pairs = {name: pair for name, pair in self._pairs.items() if name in topics}
         wanted = {name for name in topics if name not in pairs}
         frames: dict[str, tuple[str, Transform]] = {}
@@ -92,7 +92,7 @@ class WithTransforms(Messages):
             heard = {_take(transform, frames) for transform in content.transforms}
             for made, (outer, inner) in pairs.items():
                 way = _way(outer, inner, frames)
-                # A message about frames beside the way changes nothing, and is no update.
+                # A message about frames off the path changes nothing, so it is no update.
                 if way is not None and not heard.isdisjoint(way[1]):
                     shift, turn = way[0].shift, way[0].turn
                     yield (
@@ -110,7 +110,7 @@ class WithTransforms(Messages):
 
 
 def _take(message: Any, frames: dict[str, tuple[str, Transform]]) -> str:
-    """Note what a message says of a frame; gives the frame."""
+    """Store the transform of a frame from a message, and return the frame's name."""
     own, outer = message.child_frame_id.lstrip("/"), message.header.frame_id.lstrip("/")
     shift, turn = message.transform.translation, message.transform.rotation
     way = Transform((shift.x, shift.y, shift.z), (turn.x, turn.y, turn.z, turn.w))
@@ -121,7 +121,7 @@ def _take(message: Any, frames: dict[str, tuple[str, Transform]]) -> str:
 def _way(
     outer: str, inner: str, frames: Mapping[str, tuple[str, Transform]]
 ) -> tuple[Transform, frozenset[str]] | None:
-    """The pose of a frame in another, and the frames on the way; `None`: unknown."""
+    """The pose of frame `inner` in `outer`, and the frames on the path; `None`: not connected."""
     above = _above(outer, frames)
     below = _above(inner, frames)
     common = next((frame for frame in below if frame in above), None)
@@ -134,14 +134,14 @@ def _way(
 def _above(
     frame: str, frames: Mapping[str, tuple[str, Transform]]
 ) -> dict[str, tuple[Transform, tuple[str, ...]]]:
-    """The frames that one is in, from itself upwards: where it is in each, and by which frames."""
+    """By ancestor of a frame, from itself upwards: its pose there, and the frames on the path."""
     found: dict[str, tuple[Transform, tuple[str, ...]]] = {frame: (Transform(), ())}
     way, here = Transform(), frame
     names: tuple[str, ...] = ()
     while here in frames:
         outer, own = frames[here]
         if outer in found:
-            break  # a circle: nothing is further up
+            break  # the frames form a cycle
         way, names = own.then(way), (*names, here)
         found[outer] = way, names
         here = outer
@@ -154,7 +154,7 @@ def sends_transforms(topics: Mapping[str, Topic]) -> bool:
 
 
 def pairs_asked(names: Iterable[str]) -> list[tuple[str, str]]:
-    """The pairs of frames that topics and names speak of.
+    """The pairs of frames requested by topics and names of the form `/tf/OUTER/INNER`.
 
     >>> pairs_asked(["/tf/map/base", "tf.map.base.translation.x", "/odom"])
     [('map', 'base')]

@@ -1,4 +1,4 @@
-"""Logs of PX4 (ULog); needs pyulog, the extra `px4`."""
+"""Reader of PX4 logs (ULog); needs pyulog, the extra `px4`."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ from rvmon.trace.time import TIME_LIMIT
 _STAMPS = stamps_of("timestamp:us")
 _PER_STAMP = 1_000
 _PER_DURATION = 1_000_000
-"""Ticks in a microsecond, as stamps count, and in a millisecond, as the lengths of dropouts do."""
+"""Ticks in the unit of stamps, a microsecond, and in that of dropouts, a millisecond."""
 
 _HEADER = 3  # bytes before each message: its length and its type
 
 
 class _Watched:
-    """A file that notes whether it was left within a message; the library passes that over.
+    """A file that notes whether reading ended inside a message, which the library ignores.
 
-    It stops at the end of the file, and at a message that is shorter than its type can be.
+    The library stops at the end of the file, or at a message that is too short for its type.
     """
 
     def __init__(self, file: BinaryIO) -> None:
@@ -59,7 +59,13 @@ class _Watched:
 
 
 def ulog_messages(path: Path) -> ColumnMessages:
-    """Open a log."""
+    """Open a log.
+
+    Raises:
+        TraceError: the file is no ULog file, or damaged.
+        RvmonError: pyulog is not installed.
+        OSError: the file cannot be opened.
+    """
     with needed("ULog", "pyulog"):
         from pyulog import ULog
     with open(path, "rb") as file, redirect_stdout(StringIO()):
@@ -91,10 +97,10 @@ def ulog_messages(path: Path) -> ColumnMessages:
 
 
 def _topic(name: str, data: Any, start: int) -> tuple[ColumnTopic, Outage | None]:
-    """The topic of a log; instances after the first are numbered.
+    """A topic of a log, and its outage if some messages have no stamp.
 
-    Messages that were sent without a stamp, as 0, came nobody knows when: up to the first that has
-    one the topic is lost.
+    The time of a message without a stamp (a stamp of 0) is not known, so the topic has an outage up
+    to its first stamp.
     """
     camel = "".join(part.capitalize() for part in re.split(r"[/_]", data.name))
     columns = joined(_texts(data))
@@ -114,7 +120,7 @@ def _topic(name: str, data: Any, start: int) -> tuple[ColumnTopic, Outage | None
 
 
 def _texts(data: Any) -> Mapping[str, Any]:
-    """The columns of a topic: characters as texts, truth values as such."""
+    """The columns of a topic, with characters joined to texts, and truth values as bool."""
     found: dict[str, Any] = {}
     texts: dict[str, list[Any]] = {}
     for field in data.field_data:
