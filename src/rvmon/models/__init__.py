@@ -39,7 +39,7 @@ def finding(
     return Diagnostic(code, RULES[code], severity, message, (*places, *others), fix)
 
 
-def left_out(query: str, found: Diagnostic) -> Diagnostic:
+def skipped_query(query: str, found: Diagnostic) -> Diagnostic:
     """Make the warning that a query of a model is skipped; `found` is the reason."""
     message = f"the query `{' '.join(query.split())}` is left out: {found.message}"
     fix = found.help or "E<>, A[], A<>, E[] and --> are understood"

@@ -8,7 +8,7 @@ from dataclasses import replace
 from msgspec import structs
 
 from rvmon.diagnostics import Severity, Source, Span
-from rvmon.models import finding, left_out, model_error
+from rvmon.models import finding, model_error, skipped_query
 from rvmon.models import network as nta
 from rvmon.models.language import automaton_syntax, syntax
 from rvmon.models.language.automaton_syntax import Document, SignalText
@@ -176,7 +176,7 @@ def _queries(
             meaning = _formula(query.formula, resolver, top)
             queries.append(nta.Query(query.id, query.remark, query.text, meaning, query.span))
         for found in own.found.values():
-            findings.add(left_out(query.text, found))
+            findings.add(skipped_query(query.text, found))
     return tuple(queries)
 
 

@@ -108,9 +108,11 @@ def joined(op: ex.BinaryOp, parts: Sequence[ex.Expression], span: Span) -> ex.Ex
     return binary(op, left, right, span)
 
 
-def truth(it: ex.Expression) -> ex.Expression:
+def truth(expression: ex.Expression) -> ex.Expression:
     """The expression as a truth value: a constant becomes 0 or 1."""
-    return ex.Constant(int(bool(it.value))) if isinstance(it, ex.Constant) else it
+    if isinstance(expression, ex.Constant):
+        return ex.Constant(int(bool(expression.value)))
+    return expression
 
 
 def whole_compare(op: ex.BinaryOp, left: Symbol, right: Symbol, span: Span) -> ex.Expression:

@@ -138,11 +138,11 @@ class Resolver:
         return tuple(self._extent(size, scope) for size in sizes)
 
     def typed(
-        self, it: syntax.Declaration | syntax.TypeDefinition | syntax.Parameter, scope: sc.Scope
+        self, item: syntax.Declaration | syntax.TypeDefinition | syntax.Parameter, scope: sc.Scope
     ) -> sc.ResolvedType:
         """The type of a declared thing, with its own dimensions before those of the type."""
-        kind = self.type(it.type, scope)
-        return replace(kind, extents=(*self.extents(it.sizes, scope), *kind.extents))
+        kind = self.type(item.type, scope)
+        return replace(kind, extents=(*self.extents(item.sizes, scope), *kind.extents))
 
     def _extent(self, size: syntax.Size, scope: sc.Scope) -> range:
         if isinstance(size, syntax.TypeText):

@@ -25,7 +25,7 @@ from msgspec.structs import replace
 
 from rvmon.diagnostics import Diagnostic, Source, Span
 from rvmon.errors import ModelError
-from rvmon.models import finding, left_out, model_error
+from rvmon.models import finding, model_error, skipped_query
 from rvmon.models.language import automaton_syntax, syntax
 from rvmon.models.language.automaton_syntax import Document
 from rvmon.models.language.declare import Findings
@@ -297,7 +297,7 @@ def _queries(root: Element, warnings: list[Diagnostic]) -> Iterator[automaton_sy
         try:
             read = _parsed(formula, "query")
         except ModelError as error:
-            warnings.append(left_out(formula.text, error.diagnostics[0]))
+            warnings.append(skipped_query(formula.text, error.diagnostics[0]))
             continue
         length = len(formula.text.rstrip())
         text = formula.text.strip()

@@ -17,7 +17,7 @@ from rvmon.models.network.scope import Names
 
 @dataclass(frozen=True, slots=True)
 class Clock:
-    """A clock. All clocks start at 0 and run at the rate of time."""
+    """A clock. All clocks start at 0 and run at the rate of time unless a location sets another."""
 
     name: str
 

@@ -31,7 +31,7 @@ the grid. `double`, which converts an integer, is handled by `operation`."""
 WHOLE = {"<", "<=", "==", "!=", ">=", ">", "grid", "fint"}  # the operations with an integer result
 
 FUNCTIONS = {name: 1 + (name in ("fmod", "pow", "hypot")) for name in [*OPERATIONS][15:]}
-"""The operations that a model calls by name, with their number of arguments."""
+"""The operations after the 15 signs, which a model calls by name; their number of arguments."""
 
 
 def bits_of(number: float) -> int:

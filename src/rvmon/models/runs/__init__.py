@@ -167,8 +167,8 @@ class Timing:
     """The timed runs along a path.
 
     Args:
-        constraints: first those of the start, then for each instant from 1 on those that refer to
-            it and to no later one.
+        constraints: first those of the start, then for each instant from 1 on those that arise with
+            it, which refer to no later one.
         others: number of instants before the start; they are numbered after the last instant.
         scale: number of grid steps per unit of time.
     """

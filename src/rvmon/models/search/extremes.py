@@ -68,10 +68,10 @@ def extremes(
     check_clocks(network, (*terms, *compared))
     for term in query.formula.terms:
         for largest in query.formula.ends:
-            yield _Climb(network, query, term, largest, Meter(budget, watch)).run()
+            yield _ExtremeSearch(network, query, term, largest, Meter(budget, watch)).run()
 
 
-class _Climb:
+class _ExtremeSearch:
     """The search for one extreme. On the way to the least value all numbers are negated."""
 
     def __init__(

@@ -61,7 +61,7 @@ class Plan:
         goal = self._alternatives(self.goal)
         inside = self._alternatives(self.inside)
         if sought.nested is not None:
-            self._grow(sought.nested)
+            self._add_formula(sought.nested)
         automata, locations, edges = self._automata()
         pieces, rows = len(self.inside), len(self._tree) // 4
         if timer >= MOST_CLOCKS or pieces > guards.MOST_PIECES or rows > MOST_TREE_ROWS:
@@ -71,7 +71,7 @@ class Plan:
             (4, [x for v in variables for x in (v.low, v.high, v.initial, v.is_bool)]),
             (3, automata), (8, locations), (10, edges), (4, self._atoms), (3, self._limits),
             (1, self._programs.code), (1, self._programs.table), (3, goal), (3, inside),
-            (3, self._extra(sought, timer + 1)), (4, self._tree), (3, self._pieces),
+            (3, self._query_limits(sought, timer + 1)), (4, self._tree), (3, self._pieces),
             (4, _buchi_rows(states)), (1, [arc for state in states for arc in state.arcs]),
             (1, [] if ranks is None else [*ranks.automata, ranks.internal, *ranks.channels]),
         ]  # fmt: skip
@@ -151,7 +151,7 @@ class Plan:
             for number in (self._data(alternative.data), *self._compares(alternative.clocks))
         ]
 
-    def _extra(self, sought: Sought, timer: int) -> list[int]:
+    def _query_limits(self, sought: Sought, timer: int) -> list[int]:
         """The limits of the clocks that the query compares in every location."""
         everywhere = self._asked.get(None, {}).get(0, [])
         bounds = ClockBounds()
@@ -161,7 +161,7 @@ class Plan:
             rows += [timer, 0, sought.bound]
         return rows
 
-    def _grow(self, formula: ex.Expression) -> int:
+    def _add_formula(self, formula: ex.Expression) -> int:
         """Add rows of the tree for a normalised formula, and return the index of its root."""
         match formula:
             case ex.Deadlock():
@@ -172,16 +172,16 @@ class Plan:
                 guards.has_paths(formula) or guards.has_deadlock(formula)
             ):
                 kind = _AND if op is ex.BinaryOp.AND else _OR
-                return self._row(kind, self._grow(left), self._grow(right))
+                return self._row(kind, self._add_formula(left), self._add_formula(right))
             case ex.PathFormula(op, body, bound, left):
-                return self._path(op, self._grow(body), left, -1 if bound is None else bound)
+                return self._path(op, self._add_formula(body), left, -1 if bound is None else bound)
             case _:
                 first = len(self._pieces) // 3
                 self._pieces += self._alternatives(guards.alternatives_of(formula))
                 return self._row(_PLAIN, first, len(self._pieces) // 3 - first)
 
     def _path(self, op: ex.PathOp, body: int, until: ex.Expression, bound: int) -> int:
-        left = -1 if until == ex.TRUE else self._grow(until)
+        left = -1 if until == ex.TRUE else self._add_formula(until)
         match op:
             case ex.PathOp.POSSIBLY:
                 return self._row(_UNTIL, left, body, bound)
