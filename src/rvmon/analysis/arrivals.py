@@ -77,6 +77,7 @@ class Arrivals:
     def take(self, pieces: Sequence[Batch | Sample], until: int) -> None:
         """Take the next pieces of the recording, which is then complete up to `until` (ticks)."""
         place = 0
+        # Pieces before the next deadline are only added to the last updates, not evaluated.
         while self._open:
             at = min(waits[0][0] for waits in self._open.values())
             at = at if self._since is None else max(at, self._since)

@@ -168,6 +168,7 @@ def find_cycles(declared: Mapping[str, Declared], findings: Findings) -> frozens
         waiting = [(root, iter(uses[root]))] if root not in finished else []
         while waiting:
             name, rest = waiting[-1]
+            # `path` has the names of `waiting`; the last one is new if it is shorter.
             if len(path) < len(waiting):
                 path.append(name)
             following = next((n for n in rest if n in uses and n not in finished), None)

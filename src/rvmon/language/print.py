@@ -68,9 +68,8 @@ def _formula(formula: rv.Formula, level: int) -> str:
             return f"{probe}({_name(name)})"
         case rv.BoundAtom(bound=bound):
             return str(bound)
-        case rv.Compare(
-            left=left, right=rv.Literal(value=bool())
-        ):  # a bool payload field and its kin
+        # A bool that is not a signal, such as a payload field, is compared with `true`.
+        case rv.Compare(left=left, right=rv.Literal(value=bool())):
             return format_numeric(left)
         case rv.Compare(op=op, left=left, right=right):
             return f"{format_numeric(left)} {op} {format_numeric(right)}"
@@ -224,7 +223,7 @@ def _left(formula: rv.Formula, level: int) -> str:
 
     Without brackets the prefix could be read as reaching over the connective (RV002).
     """
-    edge = formula
+    edge = formula  # the rightmost operand that is printed without brackets
     while True:
         match edge:
             case rv.Unary(op=rv.UnaryOp.NOT, operand=operand):

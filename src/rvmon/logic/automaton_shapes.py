@@ -39,7 +39,7 @@ class Shapes:
         self._automata: dict[_Key, tuple[Automaton | None, Sequence[mtl.Core]]] = {}
 
     def reduced(self, required: mtl.Next, alphabet: Alphabet, budget: Budget) -> Automaton | None:
-        """The automaton of a formula; `None` if the formula looks back or does not close.
+        """The automaton of a formula; `None` if the formula looks back or exceeds the budget.
 
         Formulas that differ only in propositions share an automaton, which has the alphabet and
         residuals of the first of them; `residuals` translates these.

@@ -118,6 +118,8 @@ def widened(ages: Ages, cuts: Cuts, *, differences: bool) -> Ages:
             apart.append(place)
         if _is_wide(least, greatest, low) or (low < high and not differences):
             found[0][place], found[place][0] = -least, greatest
+    # Close the matrix again: bounds of clocks with kept differences follow from each other, and
+    # differences that were dropped follow from the bounds.
     together = [place for place in range(1, len(ages)) if place not in apart]
     for place in together:
         found[0][place] = min(found[0][other] + ages[other][place] for other in together)

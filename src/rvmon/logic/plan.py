@@ -30,7 +30,7 @@ class PlannedRule(Struct, frozen=True, eq=False):
     # whether the number of different states of its open attempts may grow without bound
     scatters: bool = False
     # of a `whenever`, not FALSE where an episode resumes after a failure; `None` if it never
-    # resumes, or the requirement is no `whenever`
+    # resumes, or the requirement is not a `whenever`
     again: State | None = None
     # of a level `whenever`, TRUE while a signal of its consequent had no value
     unborn: State | None = None

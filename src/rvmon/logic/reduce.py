@@ -102,7 +102,8 @@ class _Draft:
 
     def _key(self, index: int, label: Label) -> Hashable:
         """The initial key of partition refinement."""
-        # The core knows FAILED and PASSED by number, and starts attempts in the initial location.
+        # These stay alone: the core knows FAILED and PASSED by number, and starts attempts in the
+        # initial location.
         if index <= PASSED or index == self.initial:
             return index
         draft = self.drafts[index]

@@ -91,9 +91,9 @@ def leaf_texts(
 ) -> tuple[tuple[sf.State, str], ...]:
     """The leaves whose values a record shows, with their text in the language.
 
-    Leaves that differ only before birth have one text; the one in `lasting` represents them, as the
-    core stops updating the others. `x == x` reads as `known(x)`; where the requirement also has a
-    `known(x)` of its own, that follows it and so takes precedence.
+    Leaves that differ only before birth have the same text. The one in `lasting` represents them,
+    because the core stops updating the others. `x == x` is shown as `known(x)`. If the requirement
+    also reads `known(x)` itself, that leaf comes later and so takes precedence.
     """
     graph = graph_of(roots)
     last = lasting(graph, roots, determined)
@@ -150,7 +150,7 @@ def lasting(
 
 
 def _settled(state: sf.State, operands: Sequence[int | None]) -> int | None:
-    """The constant truth value of a node from then on; `None` if it goes on changing."""
+    """The constant truth value of a node from then on; `None` if it may still change."""
     known = [operand for operand in operands if operand is not None]
     match state.op:
         case sf.StateOp.LEAF:
@@ -243,6 +243,8 @@ def reach_of(graph: Graph, each: ForEach, trigger: sf.State | None, *, looks_bac
     own = frozenset(graph.by_name.get(event, ()))
     fields = {event: each.value}
     for name, places in graph.by_name.items():
+        # If all leaves over an event compare the same field with the key, an occurrence concerns
+        # only the instance with that key.
         found = {_compared(leaves[place], name, each.name) for place in places}
         field = found.pop()
         if name != event and not found and field is not None:

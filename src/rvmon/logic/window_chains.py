@@ -86,8 +86,8 @@ def reach_of(plan: NetworkPlan) -> int | None:
 def chain_of(plan: NetworkPlan, gap: int | None) -> Chain | None:
     """The plan as a chain; `None` if it is not one.
 
-    Where only samples are positions, a window with a positive lower bound may contain none, so the
-    decided positions need not be a prefix, and it is no chain.
+    Where only samples are positions, a window with a positive lower bound may contain no position.
+    Then the decided positions need not be a prefix, so such a plan is not a chain.
     """
     nodes = plan.nodes
     top, left, excused = len(nodes) - 1, None, None

@@ -208,6 +208,7 @@ class _Point(Struct, frozen=True):
         taken: rv.Formula | None = None
         entered: rv.Formula | None = None
         for start, end in pairwise(steps.values):
+            # `prev` of the expression is its value before the update that made it `end`.
             now, was = self._valued(end), before._valued(start)
             if _alike(now, self._valued(start)):
                 raise Refusal(rules.same_value(end.span))

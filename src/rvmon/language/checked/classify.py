@@ -276,6 +276,7 @@ def _compared(formula: rv.Compare) -> tuple[Hashable, bool]:
     A comparison that reads a field of an event has no opposite: both would be false where the
     event does not occur.
     """
+    # Of the opposite pairs (`<` and `>=`, `<=` and `>`, `==` and `!=`) the first is the key.
     positive = formula.op in (rv.CompareOp.LT, rv.CompareOp.LE, rv.CompareOp.EQ) or bool(
         _events(formula)
     )

@@ -164,12 +164,13 @@ class Effort:
     def mark(self) -> Cost:
         """Start to measure a part; the result is for `since`."""
         mark = Cost(self._deepest, self._size)
-        self._deepest = self._depth
+        self._deepest = self._depth  # so that it becomes the deepest level of the part alone
         return mark
 
     def since(self, mark: Cost) -> Cost:
         """The cost of everything since the mark."""
         cost = Cost(self._deepest - self._depth, self._size - mark.size)
+        # The part is taken out of the size again, as the caller adds it for each use.
         self._deepest, self._size = max(mark.depth, self._deepest), mark.size
         return cost
 

@@ -217,7 +217,7 @@ def _decimal_comma(text: str) -> str:
     return f"if a number was meant by `{comma[0]}`, write `{comma[1]}.{comma[2]}`" if comma else ""
 
 
-_LOOK_AHEAD = re.compile(r"\(\?[!=](?:[^()]|\([^()]*\))*\)")
+_LOOK_AHEAD = re.compile(r"\(\?[!=](?:[^()]|\([^()]*\))*\)")  # of a terminal's pattern
 
 
 def words_of(terminal: str, parser: lark.Lark) -> list[str]:
@@ -276,6 +276,7 @@ def explain_unexpected(
     nameless = nameless or bool(if_fix(source.text[start : place.start]))
     if unexpected in RESERVED and "NAME" in accepted and not (accepted >= _OPERAND or nameless):
         return names.reserved(place)
+    # In `within 3 released` the name was read as a unit, so the error comes only after it.
     if swallowed := _SWALLOWED.search(source.text, start, place.start):
         number, name = swallowed[1], Span(source, swallowed.start(2), swallowed.end(2))
         if name.text not in unit_table() and name.text not in NOT_UNITS:

@@ -92,6 +92,7 @@ class Builder:
         *window, right = rest
         op = BinaryOp.of(" ".join(word.text.split()))
         self._check_reach(left, right)
+        # These operators group to the right, so a second one without brackets is the right side.
         if op.is_kin_of_until and isinstance(right, ast.Infix) and right.op is not op:
             self.findings.append(rules.mixed_chain(right.op_span, word.span, short(word.span.text)))
         return ast.Infix(op, left, first_of(window), right, word.span, span)
