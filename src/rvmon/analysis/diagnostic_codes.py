@@ -42,7 +42,7 @@ def page_of(code: str) -> str:
     if rule is None:
         alike = "\n".join(f"  {one.code}  {one.name}" for one in _alike(code, rules))
         end = "`rvmon explain codes` lists all"
-        raise UnknownNameError(f"error: no diagnostic `{code}`; alike are\n{alike}\n{end}")
+        raise UnknownNameError(f"error: no diagnostic `{code}`; similar ones are\n{alike}\n{end}")
     return every_page()[rule.code]
 
 

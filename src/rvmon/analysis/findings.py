@@ -111,7 +111,7 @@ def _implied(spec: CheckedSpec, implication: Implication) -> Diagnostic:
         IMPLIED,
         f"{implied} fails only where {listed(by, 'or')} fails: it adds nothing",
         *_places(spec, implied, *by),
-        fix=f"drop {implied}, or look whether it was meant otherwise",
+        fix=f"drop {implied}, or check whether it was meant differently",
     )
 
 
@@ -160,7 +160,7 @@ def _can_pass(requirement: Requirement) -> str:
             f"`at end: {policy}` lets nothing pass that is open at the end: leave it out, or say "
             "for how long with `for`"
         )
-    return "the consequent contradicts itself or the trigger, whose instant counts"
+    return "the consequent contradicts itself or the trigger, whose instant is included"
 
 
 def _later(conflict: Conflict) -> Iterator[str]:

@@ -188,7 +188,7 @@ MISTAKES = {
         ("labelled.rv P.csv --severity=", "has the severity ``: there are high, low\n"),
         (
             "labelled.rv P.csv --tag knocks --severity low",
-            "no requirement that is asked for has the severity low, the tag knocks\n",
+            "no requested requirement has the severity low, the tag knocks\n",
         ),
         ("no_requirement.rv P.csv", "s has no requirement: there is nothing to check"),
         ("bare.rv P.csv --report rep", "a page shows requirements, and bare has none: add one"),

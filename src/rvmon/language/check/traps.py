@@ -105,16 +105,16 @@ def _at_trigger(
             shown = format_formula(part.left)
             yield rules.false_at_trigger(place, shown, escape, _from_later_on(part, time))
     elif truth_at(part, facts) is False:
-        fix = "let the consequent begin a tick later: `always[1 ns, …] …`"
+        fix = "let the consequent start a tick later: `always[1 ns, …] …`"
         if time is not TimeModel.HELD:
-            fix = "let the consequent begin at the next position: `next (…)`"
+            fix = "let the consequent start at the next position: `next (…)`"
         yield rules.false_at_trigger(place, format_formula(part), "", fix)
 
 
 def _from_later_on(part: rv.Binary, time: TimeModel) -> str:
     """The fix that lets `a until b` or `a unless b` start after the trigger."""
     if time is not TimeModel.HELD:
-        return f"let it begin at the next position: `next ({format_formula(part)})`"
+        return f"let it start at the next position: `next ({format_formula(part)})`"
     low, high = (part.interval.low, part.interval.high) if part.interval else (0, None)
     end = "inf)" if high is None else f"{format_duration(high)}]"
     left, right = _operand(part.left), _operand(part.right)
@@ -122,7 +122,7 @@ def _from_later_on(part: rv.Binary, time: TimeModel) -> str:
     if part.op is rv.BinaryOp.UNTIL:
         window = "" if not low and high is None else f"[{format_duration(low)}, {end}"
         later = f"({later}) and eventually{window} {right}"
-    return f"let it begin a tick later: `{later}`"
+    return f"let it start a tick later: `{later}`"
 
 
 def _later(part: rv.Formula) -> str:
@@ -131,7 +131,7 @@ def _later(part: rv.Formula) -> str:
     if not due:
         return f"leave out the first instant: `start or {_operand(part)}`"
     begin = format_duration(due)
-    return f"let it begin when so much has passed: `always[{begin}, inf) {_operand(part)}`"
+    return f"let it start after that time: `always[{begin}, inf) {_operand(part)}`"
 
 
 def _reach(part: rv.Formula) -> int:

@@ -127,7 +127,7 @@ def labelled(
         left = [name for name in left if not of[name].isdisjoint(words)]
     if not left:
         labels = ", ".join(f"the {kind} {' or '.join(words)}" for kind, words in wanted)
-        raise UnknownNameError(f"no requirement that is asked for has {labels}")
+        raise UnknownNameError(f"no requested requirement has {labels}")
     return tuple(left)
 
 

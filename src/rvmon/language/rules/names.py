@@ -78,5 +78,5 @@ recursive = Breach(
 )
 double_item = Breach(DOUBLE_NAME, "a file has one `{1}` item", other="first here")
 built_in = Breach(DOUBLE_NAME, "`{}` is a function of the language", "choose another name")
-unused = Breach(UNUSED, "`{1} {2}` is used nowhere", "remove it, or look for what should use it")
+unused = Breach(UNUSED, "`{1} {2}` is never used", "remove it, or look for what should use it")
 """An unused `define`, `const` or `let`. Arguments: which of the three, and its name."""

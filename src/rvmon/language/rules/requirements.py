@@ -61,12 +61,12 @@ RUN_SHARE = Rule("RV075", "bad-run-share", Severity.ERROR)
 future_trigger = Breach(
     FUTURE_TRIGGER,
     "`{}` refers to the future, and a trigger has to be known at once",
-    "move it behind `then`, or use `once`, `historically`, `since`",
+    "move it after `then`, or use `once`, `historically`, `since`",
 )
 end_not_alone = Breach(
     END_NOT_ALONE,
-    "`end` stands only alone, as `upon end`",
-    "write `upon end` and put the rest behind `then`",
+    "`end` can only stand alone, as `upon end`",
+    "write `upon end` and put the rest after `then`",
 )
 end_in_scope = Breach(
     END_NOT_ALONE,
@@ -103,8 +103,8 @@ def unknown_policy(span: Span, policies: Sequence[str]) -> Diagnostic:
 
 bad_run_share = Breach(
     RUN_SHARE,
-    "`{}` is no percentage between 0 and 100",
-    "write `in at least 95 % of runs`; for all runs the clause is left out",
+    "`{}` is not a percentage between 0 and 100",
+    "write `in at least 95 % of runs`; for all runs leave the clause out",
 )
 never_read = Breach(
     NEVER_READ,
@@ -126,7 +126,7 @@ bin_without_values = Breach(
 )
 bin_needs_expression = Breach(
     BIN,
-    "`{}` is no formula, and the coverpoint has no expression",
+    "`{}` is not a formula, and the coverpoint has no expression",
     "write `coverpoint NAME = expression {{…}}`",
 )
 looks_ahead = Breach(
@@ -134,10 +134,10 @@ looks_ahead = Breach(
     "`{}` refers to the future, and a bin is evaluated at the present instant",
     "use `once`, `historically`, `since`",
 )
-bad_goal = Breach(BIN, "`{}` is no count of hits", "write `goal 3`")
-bad_weight = Breach(BIN, "`{}` is no weight", "write `weight 2`")
+bad_goal = Breach(BIN, "`{}` is not a number of hits", "write `goal 3`")
+bad_weight = Breach(BIN, "`{}` is not a weight", "write `weight 2`")
 same_value = Breach(
-    BIN, "`{}` is where the step began", "a step leads to another value: `idle => moving`"
+    BIN, "`{}` is where the step started", "a step leads to another value: `idle => moving`"
 )
 empty_bin = Breach(
     EMPTY_BIN,
@@ -146,7 +146,7 @@ empty_bin = Breach(
 )
 sampled_apart = Breach(
     CROSS,
-    "its coverpoints are looked at `upon` different things",
+    "its coverpoints are sampled `upon` different formulas",
     "name the instants of the cross: add `upon` to it",
 )
 unwanted_in_point = Breach(
@@ -160,7 +160,7 @@ def no_coverpoint(span: Span, name: str, known: Sequence[str]) -> Diagnostic:
     return finding(CROSS, f"no coverpoint named `{name}`", span, fix=fix)
 
 
-same_point = Breach(CROSS, "`{}` stands twice in one cross", "name it once")
+same_point = Breach(CROSS, "`{}` occurs twice in one cross", "name it once")
 too_many_combinations = Breach(
     CROSS,
     f"{{1:,}} combinations are more than {MOST_COMBINATIONS:,}",
@@ -168,7 +168,7 @@ too_many_combinations = Breach(
 )
 bad_condition = Breach(
     CROSS,
-    "`{}` is no condition on bins",
+    "`{}` is not a condition on bins",
     "write comparisons of coverpoints with their bins: `gaze == no and location != yes`",
 )
 
@@ -180,7 +180,7 @@ NOT_LINEAR = Rule("RV054", "not-on-one-run", Severity.ERROR)
 
 path_outside = Breach(
     PATH_OUTSIDE,
-    "`{}` refers to several runs and belongs into a `property`",
+    "`{}` refers to several runs and belongs in a `property`",
     "for one run write `always` or `eventually`",
 )
 bare_time = Breach(
@@ -191,13 +191,13 @@ bare_time = Breach(
 next_window = Breach(BARE_TIME, "`AX` and `EX` take no interval", "use `AF` or `EF` with it")
 no_path_formula = Breach(
     BARE_TIME,
-    "`{}` is no path formula",
-    "`A[ ]` and `E[ ]` hold `φ U ψ`; for the others write `A[] φ`, `AF φ`, `E<> φ`",
+    "`{}` is not a path formula",
+    "`A[ ]` and `E[ ]` contain `φ U ψ`; for the others write `A[] φ`, `AF φ`, `E<> φ`",
 )
 path_in_number = Breach(PATH_OUTSIDE, "a path quantifier stands inside `{}`")
 foreign_name = Breach(
     FOREIGN_NAME,
-    "`{1}` is no name of this file and is taken for a clock or location of a model",
+    "`{1}` is not declared in this file and is taken for a clock or location of a model",
     "{2}",
 )
 no_property = Breach(
@@ -206,7 +206,7 @@ no_property = Breach(
     "add a clause `property E<> (…)`",
 )
 nothing_written = Breach(
-    NOT_LINEAR, "there is no property to be monitored", "add a clause `property A[] (…)`"
+    NOT_LINEAR, "there is no property to monitor", "add a clause `property A[] (…)`"
 )
 no_goal = Breach(
     NOT_LINEAR, "there is no property that runs should show", "add a clause `property E<> (…)`"
@@ -223,7 +223,7 @@ some_path = Breach(
 )
 not_shown = Breach(
     NOT_LINEAR,
-    "`{}` is shown by no single run",
+    "no single run can show `{}`",
     "as a goal take `E<> φ` or `E[φ U ψ]`; or check it with `rvmon verify`",
 )
 
@@ -243,12 +243,12 @@ not_of_a_goal = Breach(
 )
 choice_of_paths = Breach(
     NOT_LINEAR,
-    "`{}` leaves open which of the two the paths fulfil",
+    "`{}` leaves open which of the two the paths satisfy",
     "let `p` choose: `(p and φ) or (not p and ψ)`; or check it with `rvmon verify`",
 )
 not_on_one_path = Breach(
     NOT_LINEAR,
-    "`{}` means another thing on all paths together than on each of them",
+    "`{}` means something else on all paths together than on each single one",
     "let what comes be about one instant; or check it with `rvmon verify`",
 )
 no_response = Breach(

@@ -52,43 +52,43 @@ age_alone = Breach(
 )
 now_alone = Breach(
     WRONG_TYPE,
-    "`{}` is not what `now` is for: it is compared with a duration, by < <= > >=",
+    "found `{}`, expected a comparison of `now` with a duration, by < <= > >=",
     "with `let t0 = now` write `now - t0 <= x` or `now <= t0 + x`; the time since an event is "
     "its age: `age(e) > 3 s`",
 )
 moves_beside = Breach(
     WRONG_TYPE,
     "`{}` moves between samples along more than one window, or through more than `+ - * /` and "
-    "constants: the tick at which it flips is not worked out",
+    "constants, so the tick at which it flips cannot be computed",
     "bring one window alone to one side; `mean(x, D) - mean(y, D)` is `mean(x - y, D)`; "
-    "on a clock, `time sampled every 10 ms`, any expression is looked at each time",
+    "on a clock, `time sampled every 10 ms`, any expression is evaluated at each position",
 )
 captured_moving = Breach(
     WRONG_TYPE,
-    "`{}` moves between samples, and is not captured",
+    "`{}` moves between samples and cannot be captured",
     "compare with it in the consequent, or evaluate on a clock: `time sampled every 10 ms`",
 )
 window_in_window = Breach(
     WRONG_TYPE,
-    "`{}` has a window of its own, and a window is of what is read",
-    "compare it, and measure that: `duration(mean(x, 1 s) > 2, 10 s)`",
+    "`{}` has a window of its own and cannot be measured over another one",
+    "measure a comparison with it: `duration(mean(x, 1 s) > 2, 10 s)`",
 )
 limit_of_event = Breach(
     WRONG_TYPE,
-    "`{}` has a value only while its event occurs, and a sum over time needs one throughout",
+    "`{}` has a value only while its event occurs, but a limit needs one throughout",
     "capture it: `let limit = e.x`",
 )
 sum_of_instances = Breach(
     WRONG_TYPE,
-    "`{}` does not say of one occurrence whether it counts, and `for each` may see several at "
+    "`{}` does not decide for each occurrence whether it counts, but `for each` may see several at "
     "one instant",
     "join comparisons of its fields by `and`: `sum(if e.k == k and e.ok then e.x else 0, D)`",
 )
 variance_moves = Breach(
     WRONG_ARGUMENTS,
-    "`{}` moves along a curve between samples, and the tick at which it crosses a bound is not "
-    "worked out",
-    "take that of updates, `variance(last(20, x))`, or of a field, `variance(e.x, 10 s)`",
+    "`{}` moves along a curve between samples, so the tick at which it crosses a bound cannot be "
+    "computed",
+    "measure updates, `variance(last(20, x))`, or a field, `variance(e.x, 10 s)`",
 )
 last_alone = Breach(
     WRONG_TYPE,
@@ -96,15 +96,15 @@ last_alone = Breach(
     "say how to combine them: `mean(last(5, x)) <= 2`, `count(last(8, x > 1)) >= 5`",
 )
 last_count = Breach(
-    WRONG_ARGUMENTS, "`{0}` is no whole number from 1 to {1:,}", "write `last(5, x)`"
+    WRONG_ARGUMENTS, "`{0}` is not a whole number from 1 to {1:,}", "write `last(5, x)`"
 )
 last_of_several = Breach(
     WRONG_ARGUMENTS,
-    "`{}` does not read one signal or event alone, whose updates were counted",
+    "`{}` does not read exactly one signal or event, whose updates are counted",
     "write `last(5, x)`, `last(8, beat.ms < 500)`",
 )
 two_windows = Breach(
-    WRONG_ARGUMENTS, "`{}` has two windows", "leave the duration out, or what limits it before"
+    WRONG_ARGUMENTS, "`{}` has two windows", "leave out the duration, or `last` or `since trigger`"
 )
 since_no_trigger = Breach(
     WRONG_ARGUMENTS,
@@ -113,20 +113,20 @@ since_no_trigger = Breach(
 )
 not_of_last = Breach(
     WRONG_ARGUMENTS,
-    "`{1}` is of a time, not of updates",
-    "of updates there are `count`, `sum`, `mean`, `min`, `max`, `variance` and `distinct`",
+    "`{1}` measures time, not updates",
+    "measure updates by `count`, `sum`, `mean`, `min`, `max`, `variance` or `distinct`",
 )
 not_added = Breach(
     WRONG_ARGUMENTS,
-    "`{1}` is of {2}, and `{0}` is not",
+    "`{1}` measures {2}, and `{0}` is something else",
     "use `integral` or `mean` for signals, `sum` or `mean` for events",
 )
 """Numbers that a function cannot measure. Arguments: the function, and what it measures."""
 
 count_of_state = Breach(
     WRONG_TYPE,
-    "in `time held` `{0}` holds at every nanosecond of a stretch, and is not counted",
-    "count where it begins, `rise({0})`, or measure it: `duration({0}, …)`",
+    "in `time held` `{0}` holds at every nanosecond of a stretch and cannot be counted",
+    "count where it starts, `rise({0})`, or measure it: `duration({0}, …)`",
 )
 amount_of_future = Breach(
     WRONG_TYPE,
@@ -149,7 +149,7 @@ argument_count = Breach(
 )
 """A wrong number of arguments: the function, how many it takes in words, and how many are given."""
 
-argument_kind = Breach(WRONG_ARGUMENTS, "`{1}` needs {2}, `{0}` is none")
+argument_kind = Breach(WRONG_ARGUMENTS, "`{1}` needs {2}, and `{0}` is not one")
 """An argument of the wrong kind: the function, and the needed kind with its article."""
 
 
@@ -160,7 +160,7 @@ def argument_unit(span: Span, name: str, unit: str, needed: str) -> Diagnostic:
     fix = (
         f"divide it by 1 {unit}"
         if unit
-        else "declare it in `[rad]` or `[deg]`: an angle is no plain number"
+        else "declare it in `[rad]` or `[deg]`: an angle is not a plain number"
     )
     return finding(
         UNIT_MISMATCH,
@@ -172,7 +172,7 @@ def argument_unit(span: Span, name: str, unit: str, needed: str) -> Diagnostic:
 
 power_of_unit = Breach(
     UNIT_MISMATCH,
-    "`{0}` leaves open which power of [{1}] comes out",
+    "`{0}` leaves the power of [{1}] open",
     "write a whole number up to 9, or divide the base by one of its units",
 )
 mismatch = Breach(UNIT_MISMATCH, "[{1}] {3} [{2}]", "both sides need units of the same kind")
@@ -233,18 +233,18 @@ def no_duration(span: Span, *, plain: bool = False) -> Diagnostic:
         if plain
         else "a duration is written as `3 s` or `200 ms`"
     )
-    return finding(NO_DURATION, f"`{text}` is no duration", span, fix=fix)
+    return finding(NO_DURATION, f"`{text}` is not a duration", span, fix=fix)
 
 
 moving = Breach(
     NO_DURATION,
-    "`{}` comes from data, and is no constant duration",
+    "`{}` comes from data and is not a constant duration",
     "it is counted from a trigger: `upon e then within (x) φ`, or `(within (x) φ) and ψ`; below "
     "another operator of time compare with `let t0 = now`: `φ until now >= t0 + x`",
 )
 part_of_tick = Breach(
     PART_OF_TICK,
-    "`{}` is no whole number of nanoseconds",
+    "`{}` is not a whole number of nanoseconds",
     "durations are exact: choose a multiple of 1 ns",
 )
 too_long = Breach(EMPTY_INTERVAL, "`{}` is longer than 146 years", "shorten it")
@@ -287,7 +287,7 @@ step_in_held_time = Breach(
 step_back_in_held_time = Breach(
     STEP_IN_HELD_TIME,
     "`{1}` has no meaning in `time held`: it would refer to the nanosecond before",
-    "of a value before its last change speaks `prev(x)`; else give a duration (`once[0, D]`), or "
+    "for the value before the last update write `prev(x)`; else give a duration (`once[0, D]`), or "
     "declare `time sampled`",
 )
 ago_of_samples = Breach(

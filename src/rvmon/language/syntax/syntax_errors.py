@@ -30,12 +30,12 @@ _FIX = {
     '"': "a text ends on the line it starts on, with a second quote",
     "“": 'write straight quotes: "',
     "”": 'write straight quotes: "',
-    "'": 'texts stand in double quotes: "',
+    "'": 'texts are written in double quotes: "',
     "`": "a quoted name ends on the line it starts on, with a second backtick",
-    "%": "`%` is a unit and stands behind a number",
+    "%": "`%` is a unit and stands after a number",
     ";": "items and clauses need no `;`",
     "/": COMMENT,
-    "becomes": "write `rise(…)` for the instant at which something comes true",
+    "becomes": "write `rise(…)` for the instant at which something becomes true",
 }
 _TRIGGER_WORDS = "for `{}` write `upon` (an instant) or `whenever` (as long as it holds)"
 NEVER = "for `never` write `always not (…)`"
@@ -46,7 +46,7 @@ _CLAUSE = re.compile(
     r"(source|rationale|severity|tags|scope|at\s+end|for\s+each|in\s+at|property)"
     r'(?:\s+\w+(?:\s+in(?:\s+\S+)?)?|\s+"[^"]*")?'
 )
-_LET = "`let` stands behind the trigger or the consequent: `upon … let x = … then …`"
+_LET = "`let` stands after the trigger or the consequent: `upon … let x = … then …`"
 _SHARE = "write `in at least 95 % of runs`, or `in at most 5 % of runs`"
 _BEGINNINGS = r"(?<![\w.])(?:upon|whenever|then|always|and|or)(?![\w.])|->"
 """Words after which a formula starts."""
@@ -71,30 +71,30 @@ _CERTAIN: _Rows = (
         rf"\A(?=[^\0]*\0for\0)[^\0]*(?:{_BEGINNINGS}|\()"
         r"\s*([^()\0]*[^\s\0])\s*\0for\0[ \t]+(\d[\d.]*[ \t]*\w+)",
         "",
-        "write `held({0}, {1})` for what has held so long, `for {1} ({0})` for what is to",
+        "write `held({0}, {1})` for the past, `for {1} ({0})` for the future",
     ),
     (
         rf"\A(?=[^\0]*\0\[\0)[^\0]*(?:{_BEGINNINGS})"
         r"\s*([^\0]*[^\s\0])\s+in\s*\0\[\0\s*([^],]+?)\s*,\s*([^]]+?)\s*\]",
-        *("", "`in` is of labels: write `({0} >= {1} and {0} <= {2})`"),
+        *("", "`in` is for labels: write `({0} >= {1} and {0} <= {2})`"),
     ),
     (r"(?<![\w.])(\d+)\0[.,]\0(\d+)", "", "write `{0}.{1}`"),
     (r"(?<![\w.])\0[.,]\0(\d+)", "", "write `0.{0}`"),
     (r"(?<![\w.])(\d+)\0\.\0", "", "write `{0}.0`"),
     (
         r"(?<![\w.])within[ \t]+\0\[\0",
-        *("", "`within` takes a duration; a window stands behind `eventually`"),
+        *("", "`within` takes a duration; a window stands after `eventually`"),
     ),
     (
         r"(?<![\w.])for[ \t]+\0\[\0",
-        *("", "`for` takes a duration; a window stands behind `always`"),
+        *("", "`for` takes a duration; a window stands after `always`"),
     ),
-    (_DURATION_OF + r"\0[-+*/]\0", "", "a duration that is computed stands in brackets"),
-    (_DURATION_OF + r"\0,\0", "", "no comma stands behind a duration"),
+    (_DURATION_OF + r"\0[-+*/]\0", "", "a computed duration stands in brackets"),
+    (_DURATION_OF + r"\0,\0", "", "there is no comma after a duration"),
 )
 _LIKELY: _Rows = (
     (r'[={,]\s*\0"([^\W\d]\w*)"\0', "NAME", "labels have no quotes: `{0}`"),
-    (r"\0=>\0|==\s*\0>\0", "", "write `->` for what follows, `>=` to compare"),
+    (r"\0=>\0|==\s*\0>\0", "", "write `->` for an implication, `>=` for a comparison"),
     (r"(?<![\w.])never[ \t]+\0[^\0]", "", NEVER),
     (
         r"\Arequirement\s+([\w.]+)\s*\0\0",
@@ -107,7 +107,7 @@ _LIKELY: _Rows = (
     (r"\0let\0|(?<![\w.])let[ \t]+\0[^\0]", "", _LET),
     (
         r"\Asignal[^\0]*\0ignore\0",
-        *("", "write `ignore NaN` behind the type and role, before `stale after`"),
+        *("", "write `ignore NaN` after the type and role, before `stale after`"),
     ),
     ("", "_OF_RUNS", _SHARE),
     (r"\0in\0", "AND", _SHARE),
@@ -166,7 +166,7 @@ def _dash_fix(before: str) -> str:
     if not dashed:
         return ""
     name = dashed[1].replace("-", "_")
-    return f"`{dashed[1]}` is no name: write `{name}`, or quote it: `` `{dashed[1]}` ``"
+    return f"`{dashed[1]}` is not a name: write `{name}`, or quote it: `` `{dashed[1]}` ``"
 
 
 def _row_fix(rows: _Rows, unexpected: str, accepted: set[str], before: Span) -> str:
@@ -188,7 +188,7 @@ def _bare_unit_fix(unexpected: str, before: str) -> str:
 def _clause_fix(unexpected: str, before: str) -> str:
     """The fix for a clause before the formula, where its first word is mostly read as a name."""
     clause = _CLAUSE.fullmatch(f"{before.rstrip()} {unexpected}")
-    return f"a clause, as `{clause[1]} …`, stands behind the formula" if clause else ""
+    return f"a clause, as `{clause[1]} …`, stands after the formula" if clause else ""
 
 
 def _word_fix(unexpected: str, accepted: set[str], parser: lark.Lark, before: str) -> str:
@@ -209,7 +209,7 @@ def _word_fix(unexpected: str, accepted: set[str], parser: lark.Lark, before: st
     last = re.search(r"(\w+)\s*$", before)
     if last and last[1].lower() in ("when", "where", "once"):
         return _TRIGGER_WORDS.format(last[1])
-    return f"an operator is missing before `{unexpected}`, or a word too many"
+    return f"an operator is missing before `{unexpected}`, or there is a word too many"
 
 
 def _decimal_comma(text: str) -> str:

@@ -42,11 +42,11 @@ def test_they_are_made_of_what_has_passed(text, printed):
     ("text", "message"),
     [
         ("always (a -> within (d) f)", "comes from data"),
-        ("within (n) f", "`(n)` is no duration"),
-        ("a until t0 >= 3 s let t0 = now", "it is compared with a duration"),
-        ("a until now == t0 let t0 = now", "it is compared with a duration"),
+        ("within (n) f", "`(n)` is not a duration"),
+        ("a until t0 >= 3 s let t0 = now", "expected a comparison of `now` with a duration"),
+        ("a until now == t0 let t0 = now", "expected a comparison of `now` with a duration"),
         ("a until now - t0 >= e.w let t0 = now", "has a value only while its event occurs"),
-        ("a until t0 + t0 <= now let t0 = now", "it is compared with a duration"),
+        ("a until t0 + t0 <= now let t0 = now", "expected a comparison of `now` with a duration"),
     ],
 )
 def test_what_is_refused(text, message):

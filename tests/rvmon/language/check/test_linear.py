@@ -61,8 +61,8 @@ def test_what_means_the_same_on_every_run_is_monitored(text):
 
 
 REFUSED = {
-    "AF AG a": "means another thing on all paths together",
-    "A[a U AF b]": "means another thing on all paths together",
+    "AF AG a": "means something else on all paths together",
+    "A[a U AF b]": "means something else on all paths together",
     "AG EF a": "`EF a` refers to one of several paths",
     "E<> a": "refers to one of several paths",
     "(AF a) or (AG b)": "leaves open which of the two",

@@ -90,7 +90,7 @@ def test_override():
         compile_text(text, constants={"S": "2 s"})
     with pytest.raises(SpecError, match=r"<constant T>:1:"):
         compile_text(text, constants={"T": "2 +"})
-    with pytest.raises(SpecError, match=r"`2` is no duration|is no duration"):
+    with pytest.raises(SpecError, match="is not a duration"):
         compile_text(text, constants={"T": "2"})
 
 

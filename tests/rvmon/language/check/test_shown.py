@@ -30,9 +30,9 @@ def test_what_one_run_shows_is_a_goal(text):
 @each(
     ("text", "message"),
     [
-        ("property A[] a", "shown by no single run"),
-        ("property EG EF a", "shown by no single run"),
-        ("property E<> (AF a)", "shown by no single run"),
+        ("property A[] a", "no single run can show"),
+        ("property EG EF a", "no single run can show"),
+        ("property E<> (AF a)", "no single run can show"),
         ("property E<> Door.open", "reads a clock or location of a model"),
         ('source "x"', "no property that runs should show"),
         ("property E<> a\n  at end: fail", "a goal has no attempts"),

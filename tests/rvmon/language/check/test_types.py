@@ -146,4 +146,4 @@ def test_unit_factors(text, base, factor):
 
 @pytest.mark.parametrize("text", ["stale after 1 s ignore NaN", "ignore nan", "ignore"])
 def test_where_what_is_ignored_stands(text, message):
-    assert "write `ignore NaN` behind the type" in message(f"signal z : real {text}\n")
+    assert "write `ignore NaN` after the type" in message(f"signal z : real {text}\n")

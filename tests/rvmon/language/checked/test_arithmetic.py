@@ -69,10 +69,10 @@ def test_constants_are_worked_out_as_values_are(op):
     [
         ("sin(x) < 1", "`sin` takes an angle, `x` has no unit"),
         ("exp(d) < 1", "`exp` takes a plain number, `d` comes in [m]"),
-        ("pow(d, x) < 1 m", "leaves open which power of [m] comes out"),
+        ("pow(d, x) < 1 m", "leaves the power of [m] open"),
         ("angle_between(d, d) < 1 m", "`angle_between` takes an angle, `d` comes in [m]"),
-        ("bit(x, 3)", "`bit` needs a number of type `int`, `x` is none"),
-        ("bit_and(n, 2.5) > 1", "`bit_and` needs a number of type `int`, `2.5` is none"),
+        ("bit(x, 3)", "`bit` needs a number of type `int`, and `x` is not one"),
+        ("bit_and(n, 2.5) > 1", "`bit_and` needs a number of type `int`, and `2.5` is not one"),
         ("bit(n, 3) == 1", "true or false and is not compared"),
         ("asin(2) < 1 rad", "`asin(2)` is out of range"),
     ],
