@@ -29,7 +29,7 @@ _Choice = TypeVar("_Choice", bound=StrEnum)
 
 
 class On(StrEnum):
-    """The messages that count as updates: all, or those with a changed value."""
+    """Which messages are updates: all, or only those with a changed value."""
 
     MESSAGE = "message"
     CHANGE = "change"
@@ -41,10 +41,10 @@ _EVENT = ("topic", "type", "value", "fields", "on", "clock")
 
 
 def load_binding(path: str | Path, spec: CheckedSpec) -> Binding:
-    """Read a binding; docs/reference/bindings.md says what is in it.
+    """Read a binding; docs/reference/bindings.md describes the format.
 
     Raises:
-        RvmonError: it cannot be read, or does not fit the specification.
+        RvmonError: the file cannot be read, or does not fit the specification.
     """
     try:
         content = tomllib.loads(text_of_file(path))
@@ -78,7 +78,7 @@ def _binding(content: Mapping[str, Any], spec: CheckedSpec, folder: Path) -> Bin
 
 
 def _tables(content: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
-    """The table of each name; `[bind.robot.state]` means `robot.state`, as if quoted."""
+    """Yield each name and its table; `[bind.robot.state]` means the name `robot.state`."""
     for key, value in content.items():
         name = prefix + key
         if not isinstance(value, dict):
@@ -164,16 +164,16 @@ def _converted(value: Term, given: str, kind: Kind, declared: str) -> Term:
     factor = source.factor / target.factor
     if factor == 1:
         return value
-    if factor.numerator == 1:  # it is rounded once if the factor or its inverse is an integer
+    if factor.numerator == 1:  # dividing by an integer rounds once, its inverse would round twice
         divide = NumericOp.DIV.entry.apply
         return Applied(divide, (value, Constant(float(factor.denominator))), "")
     return Applied(NumericOp.MUL.entry.apply, (value, Constant(float(factor))), "")
 
 
 def _definition(path: Path) -> tuple[str, str]:
-    """Type and text of a definition; its path ends in the package: `shop_msgs/msg/Pick.msg`.
+    """Type and text of a definition, whose path must end like `shop_msgs/msg/Pick.msg`.
 
-    A CAN database is named by its file.
+    A CAN database has the name of its file in place of a type.
     """
     is_database = path.suffix.lower() in DATABASES
     is_message = path.suffix == ".msg" and len(path.parts) >= 3 and path.parts[-2] == "msg"
@@ -210,7 +210,11 @@ def _expect_keys(content: Mapping[str, Any], known: Sequence[str], what: str) ->
 
 
 def reading_schema(spec: CheckedSpec, schema: Schema, **options: Unpack[SchemaArguments]) -> Schema:
-    """A schema with the options of `rvmon.session.Spec.reading`, which says what they mean."""
+    """A schema with the options of `rvmon.session.Spec.reading`, which documents them.
+
+    Raises:
+        RvmonError: the binding cannot be read, or an option does not fit the specification.
+    """
     path, time, clock = options.get("binding"), options.get("time"), options.get("clock")
     bound = schema.binding if path is None else load_binding(path, spec)
     fields = [f"{name}.{field}" for name, own in schema.events.items() for field in own]

@@ -1,4 +1,4 @@
-"""Candidates for signals in a recording: fields, values computed from them, their ranges."""
+"""Candidates for declared names in a recording: fields, values computed from them, their ranges."""
 
 from __future__ import annotations
 
@@ -42,52 +42,52 @@ _ALONG: Mapping[str, Mapping[str, tuple[str, ...]]] = {
     "m/s^2": {"x": ("forward", "longitudinal"), "y": ("lateral", "sideways"), "z": ("vertical",)},
     "rad/s": {"x": ("roll",), "y": ("pitch",), "z": ("yaw", "turn")},
 }
-"""The names of a quantity along, or about, an axis of a robot."""
+"""By unit and axis of a robot, the words for a quantity along the axis, or about it."""
 
 ALONG = frozenset(
     {word for axes in _ALONG.values() for words in axes.values() for word in words}
-    | {"altitude", "height"}  # of positions as ROS has them, with z upwards
+    | {"altitude", "height"}  # positions along z, which points upwards in ROS
 ) - {"rate"}
-"""Words that name an axis without its letter."""
+"""Words that imply an axis without naming its letter."""
 
 _COMMANDS = frozenset({"command", "trajectory", "jog"})
 
 _COMMANDING = re.compile(r"Ackermann|Trajectory|Setpoint|Command|Target|Goal|Jog")
-"""In names of types: their messages say what should be."""
+"""A pattern for the types of messages that are commands."""
 
 
 class Candidate(Struct, frozen=True):
-    """A candidate to feed a declared name."""
+    """A candidate source of a declared name."""
 
     topic: Topic  # of the messages
-    value: str  # an expression; empty: each message is an occurrence
-    kind: Kind | None  # of the value; `None` of each message
-    own: tuple[str, ...]  # words of the value, and those of its meaning
-    around: tuple[str, ...]  # words of the topic, of its frames and of the type
+    value: str  # an expression; "": each message is an occurrence
+    kind: Kind | None  # of the value; `None` if each message is an occurrence
+    own: tuple[str, ...]  # words of the value and of its meaning
+    around: tuple[str, ...]  # words of the topic, its frames and its type
     meaning: Meaning  # of the field, or of the computed result
-    axis: str = ""  # along which it is measured; empty if along none
-    comment_words: tuple[str, ...] = ()  # of a comment on it
-    implied: tuple[str, ...] = ()  # words that people have for it along its axis, or of a joint
+    axis: str = ""  # the axis along which it is measured, or ""
+    comment_words: tuple[str, ...] = ()  # words of a comment on it
+    implied: tuple[str, ...] = ()  # words that people use for it, given its axis, or for a joint
 
     @property
     def key(self) -> tuple[str, str]:
-        """What the values are of: the topic's name and the expression."""
+        """The topic's name and the expression, which identify the values."""
         return self.topic.name, self.value
 
     @property
     def is_command(self) -> bool:
-        """Whether it says what should be, and not what is."""
+        """Whether it is a command (what should be), not a measurement (what is)."""
         words = {*words_of(self.topic.name), *self.own}
         return not _COMMANDS.isdisjoint(words) or bool(_COMMANDING.search(self.topic.type))
 
     @property
     def is_code(self) -> bool:
-        """Whether it is a number that stands for something, of which nobody says for what."""
+        """Whether it may be a code: an integer without a known dimension."""
         return self.kind is Kind.INT and not self.dimensions
 
     @property
     def unit(self) -> Unit | None:
-        """The unit that the messages or the name of the field state; `None` if neither does."""
+        """The unit that the messages or the name of the field state; `None` if they do not."""
         if self.meaning.sort is Sort.MEASURED and len(self.meaning.units) == 1:
             return self.meaning.units[0]
         named = unit_in_name(self.value) if self.meaning.sort is Sort.OPEN else ""
@@ -95,12 +95,12 @@ class Candidate(Struct, frozen=True):
 
     @property
     def says_unit(self) -> bool:
-        """Whether the messages say its unit, or one of several, or the name of the field does."""
+        """Whether the messages or the name of the field state its unit, maybe as one of several."""
         return self.meaning.sort is Sort.MEASURED or self.unit is not None
 
     @property
     def dimensions(self) -> frozenset[Dimension]:
-        """The dimensions of its units; guessed from its words where the messages state none."""
+        """The possible dimensions; guessed from its words if no unit is stated."""
         if self.meaning.sort is Sort.MEASURED:
             return frozenset(unit.dimension for unit in self.meaning.units)
         if self.unit is not None:
@@ -109,12 +109,12 @@ class Candidate(Struct, frozen=True):
 
 
 def candidates_of(topic: Topic, named: Looked) -> Iterator[Candidate]:
-    """All that the messages of a topic say or that can be calculated of them."""
+    """Yield the candidates of a topic: fields of its messages, and values computed from them."""
     frames = [word for frame in sorted(named.frames) for word in words_of(frame)]
     type_words = words_of(topic.type.rpartition("/")[2]) if is_listed(topic.type) else []
     around = tuple(dict.fromkeys([*words_of(topic.name), *frames, *type_words]))
     with_names = arrays_with_names(topic)
-    # In flight z points down: what is along it is no height, and no climbing.
+    # In flight stacks z points down, so that a value along z is neither a height nor a climb rate.
     # Types of MAVLink and of ArduPilot's logs are in capitals.
     is_down = topic.type.startswith("px4_msgs/") or topic.type.isupper() or "ned" in around
     for leaf, kind in topic.leaves.items():
@@ -130,7 +130,7 @@ def candidates_of(topic: Topic, named: Looked) -> Iterator[Candidate]:
         if leaf.endswith("w") and meaning.sort is Sort.QUATERNION and "[" not in leaf:
             turned = Meaning(Sort.MEASURED, (parse_unit("rad"),))
             whole = leaf.rpartition(".")[0]
-            # What drives on a plane says of these two that they are 0.
+            # Roll and pitch only from an IMU: robots that drive on a plane report 0 for them.
             for turn in TURNS if topic.type.endswith("/Imu") else TURNS[:1]:
                 called = (turn, "angle")
                 yield Candidate(topic, f"{turn}({whole})", kind, called, around, turned)
@@ -142,7 +142,7 @@ def candidates_of(topic: Topic, named: Looked) -> Iterator[Candidate]:
 
 
 def _of_keys(topic: Topic, looked: Looked, around: tuple[str, ...]) -> Iterator[Candidate]:
-    """The values that have a key, which are texts, and may be numbers."""
+    """Yield the candidates of values with a key, which are texts that may hold numbers."""
     for path, value in looked.entries.items():
         own = tuple(words_of(" ".join(re.findall(r"\[([^\[\]]+)\]", path))))
         if number(value) is None:
@@ -154,7 +154,10 @@ def _of_keys(topic: Topic, looked: Looked, around: tuple[str, ...]) -> Iterator[
 def _places(
     leaf: str, meaning: Meaning, named: Looked, with_names: Mapping[str, str]
 ) -> Iterator[tuple[str, list[str], str]]:
-    """The values that a field has, with words and axis; of an array some elements, or the least."""
+    """Yield the values of a field with their words and axis.
+
+    An array gives its elements along axes, the minimum of distances, and its named elements.
+    """
     words = [*words_of(leaf), *(one for word in meaning.words for one in words_of(word))]
     if "[" not in leaf:
         last = words_of(leaf.rpartition(".")[2])[-1:]
@@ -182,7 +185,7 @@ def _implied(value: str, own: Iterable[str], meaning: Meaning, axis: str) -> tup
 
 
 def events_of(topics: Mapping[str, Topic]) -> Iterator[Candidate]:
-    """Candidates for events: a topic whose only truth value is true, or each of its messages."""
+    """Yield the candidates for events: the only truth value of a topic, or else each message."""
     for topic in topics.values():
         if topic.fault:
             continue
@@ -200,17 +203,21 @@ def events_of(topics: Mapping[str, Topic]) -> Iterator[Candidate]:
 
 
 def foreign_words(candidate: Candidate) -> list[str]:
-    """The words of a candidate that say something, without those of the meaning alone."""
+    """The meaningful words of a candidate's topic and value, not those of its meaning."""
     field = words_of(candidate.value)
     written = [*words_of(candidate.topic.name), *field]
     plain = {*EMPTY, *AXES, "hypot", candidate.axis}
     if {*field} <= PLACES:
-        plain -= PLACES  # it is what the field says, and no place of it
+        plain -= PLACES  # the field has no other word, so these are its meaning
     return [word for word in dict.fromkeys(written) if word not in plain]
 
 
 def modifiers_of(candidate: Candidate) -> set[str]:
-    """The words that make another quantity of it: of its field, of a number alone of its topic."""
+    """The words that turn a candidate into another quantity, such as an error or a limit.
+
+    These are words of the field in `MODIFIERS`, of a comment in `OF_COMMENTS`, and of the topic in
+    `OF_TOPICS`, or in `MODIFIERS` if the message is just a number (`data`).
+    """
     is_alone = candidate.meaning.sort is Sort.OPEN and candidate.value == "data"
     words = words_of(candidate.topic.name)
     found = {word for word in words if word in (MODIFIERS if is_alone else OF_TOPICS)}
@@ -218,19 +225,19 @@ def modifiers_of(candidate: Candidate) -> set[str]:
     return found | {word for word in candidate.own if word in MODIFIERS}
 
 
-_FIRST = 3  # values that are shown
+_FIRST = 3  # distinct values that are shown
 
 
 class Range(Struct):
     """The range of the values seen."""
 
-    count: int = 0  # of messages that had it
-    first: list[Any] = field(default_factory=list)  # the first values, each once
+    count: int = 0  # messages with a known value
+    first: list[Any] = field(default_factory=list)  # the first distinct values
     low: float | None = None  # the least number; `None` if there was none
-    high: float | None = None  # the greatest
+    high: float | None = None  # the greatest number
 
     def add(self, value: Any) -> None:
-        """Take the value of a message."""
+        """Take the value of a message; `None` and NaN are ignored."""
         if value is None or value != value:
             return
         self.count += 1
@@ -242,7 +249,7 @@ class Range(Struct):
 
     @property
     def is_constant(self) -> bool:
-        """Whether it is a number that was always the same."""
+        """Whether all values were the same number."""
         return self.low is not None and self.low == self.high
 
     def __str__(self) -> str:
@@ -267,7 +274,7 @@ def _shown(value: Any) -> str:
 def ranges_of(
     source: MessageFile, candidates: Iterable[Candidate]
 ) -> Mapping[tuple[str, str], Range]:
-    """By topic and value, what the values of these were."""
+    """By key of a candidate, the range of its values in the first messages of a recording."""
     ranges: dict[tuple[str, str], Range] = {}
     readers: dict[str, list[tuple[Range, Get]]] = defaultdict(list)
     for candidate in candidates:

@@ -1,4 +1,4 @@
-"""The value of a binding: an expression of the language over the fields of a message."""
+"""Values in bindings: expressions of the language over the fields of a message."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from rvmon.trace.schema import TURNS, Applied, Constant, Elements, Field, Term
 
 
 def yaw(x: float, y: float, z: float, w: float) -> float:
-    """The turn about the upright axis that a quaternion of length 1 says, in radians.
+    """The rotation about the vertical axis of a quaternion of length 1, in radians.
 
     >>> round(yaw(0, 0, 0.7071067811865476, 0.7071067811865476), 9)
     1.570796327
@@ -34,7 +34,7 @@ def yaw(x: float, y: float, z: float, w: float) -> float:
 
 
 def roll(x: float, y: float, z: float, w: float) -> float:
-    """The turn about the axis that points forwards, of a quaternion of length 1, in radians.
+    """The rotation about the axis that points forwards, of a quaternion of length 1, in radians.
 
     >>> round(roll(0.7071067811865476, 0, 0, 0.7071067811865476), 9)
     1.570796327
@@ -43,7 +43,9 @@ def roll(x: float, y: float, z: float, w: float) -> float:
 
 
 def pitch(x: float, y: float, z: float, w: float) -> float:
-    """The turn about the axis that points left, nose down, of a quaternion of length 1, in radians.
+    """The rotation about the axis that points left, of a quaternion of length 1, in radians.
+
+    It is positive with the nose down.
 
     >>> round(pitch(0, 0.25881904510252074, 0, 0.9659258262890683), 9)
     0.523598776
@@ -55,7 +57,7 @@ _TURNS = dict(zip(TURNS, (yaw, pitch, roll), strict=True))
 
 
 def number(text: str | float) -> float | None:
-    """The number that a text says; `None`, which is unknown, if it says none.
+    """The number that a text holds; `None` (unknown) if it holds none.
 
     >>> number("41.5"), number("n/a")
     (41.5, None)
@@ -67,7 +69,7 @@ def number(text: str | float) -> float | None:
 
 
 def least(values: Iterable[float]) -> float | None:
-    """The least of numbers but those that are NaN; `None` if there is none.
+    """The least of the numbers that are not NaN; `None` if there are none.
 
     >>> least([2.0, float("nan"), 1.5]), least([])
     (1.5, None)
@@ -76,7 +78,7 @@ def least(values: Iterable[float]) -> float | None:
 
 
 def greatest(values: Iterable[float]) -> float | None:
-    """The greatest of numbers but those that are NaN; `None` if there is none."""
+    """The greatest of the numbers that are not NaN; `None` if there are none."""
     return max(_known(values), default=None)
 
 
@@ -88,11 +90,11 @@ def _known(values: Iterable[float]) -> list[float]:
 def compared(
     values: Iterable[float], *, holds: Callable[[float, float], bool], limit: float, decisive: bool
 ) -> bool | None:
-    """Whether a comparison holds of some element (`decisive` is true), or of all (it is false).
+    """Whether a comparison holds for any element (`decisive=True`), or for all (`decisive=False`).
 
     Returns:
-        `decisive` if it comes out so for an element that is known; unknown if it does not, and
-        there are others.
+        `decisive` if one known element gives it; else `None` (unknown) if an
+        element is NaN, and `not decisive` if none is.
 
     >>> [compared([2.0, 0.1], holds=operator.lt, limit=0.3, decisive=one) for one in (True, False)]
     [True, False]
@@ -108,7 +110,7 @@ CONNECTIVES: Mapping[BinaryOp, Callable[[float, float], bool]] = {
     BinaryOp.OR: lambda first, second: bool(first) or bool(second),
     BinaryOp.XOR: operator.ne,
 }
-"""The connectives of a value."""
+"""The connectives that a value may use."""
 
 _WORDS = frozenset({"and", "or", "xor", "not", "true", "false"})
 
@@ -116,26 +118,29 @@ _PATH = re.compile(r"`[^`]*`|(?<![\w.])[^\W\d]\w*(?:\.[^\W\d]\w*|\[[^\[\]`]*\])*
 
 _OF_ARRAYS: Mapping[str, Callable[..., Any]] = {"min": least, "max": greatest}
 
-_OF_ELEMENTS = {"any": True, "all": False}  # the comparison of an element that decides that of all
+_OF_ELEMENTS = {"any": True, "all": False}  # the result for one element that decides for all
 
 _ROTATION = ("x", "y", "z", "w")
 
 
 def term_of(text: str) -> Term:
-    """Read a value.
+    """Parse a value.
 
     Args:
-        text: an expression without units and temporal operators; what is a name in it, also one
-            like `ranges[0]`, is a field of the message; `yaw(q)`, `pitch(q)` and `roll(q)` turn
-            as a quaternion does, `min(ranges)` and `max(ranges)` are of all elements of an array,
-            `number(text)` is of a text.
+        text: an expression without units and temporal operators. Names in it, also `ranges[0]`, are
+            fields of the message. `yaw(q)`, `pitch(q)` and `roll(q)` are the rotations of a
+            quaternion, `min(ranges)` and `max(ranges)` the extremes of an array, `any(ranges < 1)`
+            and `all(ranges < 1)` compare its elements, `number(text)` reads a text.
+
+    Raises:
+        RvmonError: the text is no such expression.
 
     >>> term_of("twist.linear.x")
     Field(path=('twist', 'linear', 'x'))
     >>> term_of("ranges[0] - 1").args
     (Field(path=('ranges', 0)), Constant(value=1))
     """
-    # Words of the language may be names of fields.
+    # Quote all names, as fields may be named like keywords of the language.
     quoted = _PATH.sub(
         lambda found: found[0] if found[0] in _WORDS or found[0][0] == "`" else f"`{found[0]}`",
         text,

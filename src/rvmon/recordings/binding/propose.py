@@ -1,4 +1,4 @@
-"""A binding that is proposed by what messages mean, by words, and by what a recording holds."""
+"""Proposal of a binding, by the meaning of fields, their words, and the values in a recording."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from rvmon.recordings.messages.file import Looked, MessageFile, names_in
 from rvmon.trace.schema import Kind
 from rvmon.units import base_unit, parse_unit, unit_table
 
-_MOST = 4  # places that are shown for a name
+_MOST = 4  # the most candidates that are shown for a name
 
 _LARGE = {"rad": 360, "m": 9_000, "degC": 200, "V": 999, "A": 999, "m/s": 999, "": 100}
-"""A whole number that is larger counts parts of a unit, where nobody says of which."""
+"""By plain unit, a limit: larger integers must be in a smaller unit, which is not known."""
 
-_WHOLE = 1.5  # no ratio of a whole is as large
-_TURN = 7  # no angle in radians, of what turns once, is as large
+_WHOLE = 1.5  # a ratio is below this; larger values are per cent
+_TURN = 7  # an angle of at most one turn is below this in radians; larger values are degrees
 
 Found = list[tuple[float, Candidate]]
 Ranges = Mapping[tuple[str, str], Range]
@@ -38,17 +38,17 @@ Ranges = Mapping[tuple[str, str], Range]
 class Proposal(Struct, frozen=True):
     """The binding proposed for a specification and a recording."""
 
-    text: str  # of the binding, TOML
-    unmatched: tuple[str, ...]  # the names that are left open
-    # the names that are fed by one and the same field, in groups
+    text: str  # the binding as TOML
+    unmatched: tuple[str, ...]  # the names left open
+    # groups of names that are fed by the same field
     shared: tuple[tuple[str, ...], ...]
-    unlabelled: tuple[str, ...]  # the names whose numbers stand for labels that nobody named
+    unlabelled: tuple[str, ...]  # label signals fed by numbers whose labels are not known
 
 
 def propose(spec: CheckedSpec, source: MessageFile) -> Proposal:
-    """Find for each declared name what says the same, in its unit and of its kind.
+    """Propose a source for each declared name: a field with the same words, kind and dimension.
 
-    A name that nothing fits, or several things equally well, is left open.
+    A name is left open if no field fits, or if several fit equally well.
     """
     topics = source.topics
     seen = names_in(source)
@@ -103,7 +103,7 @@ def _has_codes(type_: Type | None, candidate: Candidate) -> bool:
 
 
 def _with_values(found: Found, ranges: Ranges, type_: Type | None) -> Found:
-    """Without what counts parts of a unit, and what never has a value, unless that is all."""
+    """Drop candidates that are raw, and those without a value unless no others are left."""
     if type_ is not None and type_.unit:
         found = [one for one in found if not _is_raw(one[1], type_.unit, ranges)]
     kept = [one for one in found if (own := ranges.get(one[1].key)) is None or own.count]
@@ -111,7 +111,7 @@ def _with_values(found: Found, ranges: Ranges, type_: Type | None) -> Found:
 
 
 def _is_raw(candidate: Candidate, unit: str, ranges: Ranges) -> bool:
-    """Whether it is a whole number whose unit nobody says, and too large for the plain one."""
+    """Whether a candidate is an integer without a stated unit, too large for the plain unit."""
     own = ranges.get(candidate.key)
     if own is None or own.high is None or own.low is None or candidate.unit is not None:
         return False
@@ -120,7 +120,7 @@ def _is_raw(candidate: Candidate, unit: str, ranges: Ranges) -> bool:
 
 
 def _is_idle(found: Found, ranges: Ranges) -> bool:
-    """Whether the best is a number that never changes, and another one does."""
+    """Whether the best candidate is a number that never changes, and another one does change."""
     best, *others = (ranges.get(candidate.key, Range()) for _, candidate in found)
     return best.is_constant and any(own.low != own.high for own in others)
 
@@ -149,7 +149,10 @@ def _signal_lines(type_: Type, candidate: Candidate, ranges: Ranges) -> Iterator
 
 
 def _unit_of(declared: str, candidate: Candidate, largest: float) -> tuple[str, str]:
-    """The unit of a value, and a remark unless the messages say it; `largest`: without its sign."""
+    """The unit of a value, and a remark unless the messages state it.
+
+    `largest`: the greatest absolute value seen.
+    """
     dimension = parse_unit(declared).dimension
     units = [unit.symbol or "1" for unit in candidate.meaning.units if unit.dimension == dimension]
     if units:
@@ -164,7 +167,7 @@ def _unit_of(declared: str, candidate: Candidate, largest: float) -> tuple[str, 
 
 
 def _plain_unit(dimension: tuple[tuple[str, int], ...]) -> str:
-    """The unit without a factor: one that has a name of its own, or the product of base units.
+    """The unit of a dimension without a factor: one with its own name, or a product of base units.
 
     >>> _plain_unit(parse_unit("mV").dimension), _plain_unit(parse_unit("km/h").dimension)
     ('V', 'm/s')
@@ -172,7 +175,7 @@ def _plain_unit(dimension: tuple[tuple[str, int], ...]) -> str:
     named = [
         name
         for name, unit in unit_table().items()
-        if unit.dimension == dimension and unit.factor == 1 and name != "J"  # or is it a torque?
+        if unit.dimension == dimension and unit.factor == 1 and name != "J"  # may be a torque
     ]
     return min(named, key=len, default=base_unit(dict(dimension)).symbol)
 
@@ -234,5 +237,5 @@ def _key(name: str) -> str:
 
 
 def _text(text: str) -> str:
-    """A text as TOML writes it, which escapes as JSON does."""
+    """A text as a TOML string, which has the same escapes as JSON."""
     return json.dumps(text, ensure_ascii=False)

@@ -1,4 +1,4 @@
-"""Ranks fields of a recording as sources of a name; units, kinds and words must not conflict."""
+"""Ranking of the fields of a recording as sources of a name, by kind, unit and words."""
 
 from __future__ import annotations
 
@@ -38,14 +38,14 @@ _FITTING = {
 _REQUESTS = frozenset(
     {"request", "requested", "event", "pressed", "command", "hit", "touched", "triggered"}
 )
-"""Words of events that carry no further meaning."""
+"""Words in the names of events that add no meaning."""
 
 _EXTREMES = ("minimum", "maximum")
 """Limits; in comments they describe the range of a value, not the value itself."""
 
-_A_WORD = 0.05  # scores of candidates with the same words found differ by less than this
+_A_WORD = 0.05  # scores differ by less than this if the same words were found
 
-_MOVING = "nav_msgs/msg/Odometry"
+_MOVING = "nav_msgs/msg/Odometry"  # preferred to other types
 
 
 class Wanted(Struct, frozen=True):
@@ -53,7 +53,7 @@ class Wanted(Struct, frozen=True):
 
     words: tuple[str, ...]  # the words of the name
     type: Type | None  # its declared type; `None` for an event
-    guess: str = ""  # a note on how a word was interpreted; "" if none was
+    guess: str = ""  # a note on how a word was interpreted, or ""
     name: str = ""
 
     @property
@@ -63,7 +63,7 @@ class Wanted(Struct, frozen=True):
 
 
 def wanted_of(name: str, type_: Type | None, topics: Iterable[Topic]) -> Wanted:
-    """The wanted words of a name; with numbered topics, `leader` means 1 and `follower` 2."""
+    """Split a name into wanted words; if topics are numbered, `leader` is 1 and `follower` 2."""
     listed = [*topics]
     there = {word for topic in listed for word in words_of(topic.name)}
     fields = {word for topic in listed for leaf in topic.leaves for word in words_of(leaf)}
@@ -80,7 +80,7 @@ def wanted_of(name: str, type_: Type | None, topics: Iterable[Topic]) -> Wanted:
 
 
 def fitting(wanted: Wanted, candidates: Iterable[Candidate]) -> list[tuple[float, Candidate]]:
-    """The candidates that fit with their scores, the best first."""
+    """The candidates that fit a name, with their scores, the best first."""
     type_ = wanted.type
     fit = [
         candidate
@@ -99,7 +99,7 @@ def fitting(wanted: Wanted, candidates: Iterable[Candidate]) -> list[tuple[float
 
 
 def in_such_a_unit(wanted: Wanted, candidates: Iterable[Candidate]) -> list[Candidate]:
-    """Candidates measured in the declared unit, whatever their names; most common words first."""
+    """Candidates measured in the declared unit, whatever their names; most shared words first."""
     type_ = wanted.type
     if type_ is None or not type_.unit:
         return []
@@ -120,8 +120,8 @@ def in_such_a_unit(wanted: Wanted, candidates: Iterable[Candidate]) -> list[Cand
 def is_clear(wanted: Wanted, found: Sequence[tuple[float, Candidate]]) -> bool:
     """Whether the best candidate is clearly better than all others.
 
-    Not so between equal fields of two topics, nor between similar codes, unless the best is named
-    exactly like the name and both are of one topic.
+    It must be better by a whole word than the same field of another topic. A code must be better by
+    a whole word than all others, except those of its own topic if it has exactly the wanted name.
     """
     if not found:
         return False
@@ -134,14 +134,14 @@ def is_clear(wanted: Wanted, found: Sequence[tuple[float, Candidate]]) -> bool:
 
 
 def _is_alike(first: Candidate, second: Candidate, *, is_exact: bool) -> bool:
-    """Whether the first must be better by a whole word: of twins, and of ambiguous codes."""
+    """Whether the first must be better by a whole word: the same field twice, or a code."""
     if first.topic.name == second.topic.name:
         return first.is_code and not is_exact
     return first.is_code or (first.value, first.topic.type) == (second.value, second.topic.type)
 
 
 def _fits(wanted: Wanted, type_: Type, candidate: Candidate) -> bool:
-    """Whether kind, unit, role, modifiers and axis agree with the name."""
+    """Whether kind, unit, role (command or not), modifiers and axis agree with the name."""
     if candidate.kind not in _FITTING[type_.kind] or candidate.topic.fault:
         return False
     is_odd = candidate.meaning.sort is Sort.QUATERNION
@@ -163,7 +163,7 @@ def _is_of_another(wanted: Wanted, candidate: Candidate) -> bool:
     if element is not None:
         return not any(is_found(word, wanted.words) for word in words_of(element[1]))
     subjects = {word for word in foreign_words(candidate) if word in SUBJECTS}
-    if "temperature" in wanted.words:  # each part has one of its own
+    if "temperature" in wanted.words:  # each part has its own, also the battery
         subjects |= {"battery"} & {*candidate.around}
     if not OF_SURROUNDINGS.isdisjoint(candidate.own):
         subjects -= {"ambient"}
@@ -171,7 +171,7 @@ def _is_of_another(wanted: Wanted, candidate: Candidate) -> bool:
 
 
 def _says_so(wanted: Wanted, candidate: Candidate) -> bool:
-    """Whether the last words of a topic are those of an event and no others; fields always fit."""
+    """Whether the last part of a topic has only words of the event; a field except `data` fits."""
     if candidate.value not in ("", "data"):
         return True
     last = words_of(candidate.topic.name.rpartition("/")[2])
@@ -179,11 +179,11 @@ def _says_so(wanted: Wanted, candidate: Candidate) -> bool:
 
 
 def _is_along(wanted: Wanted, candidate: Candidate) -> bool:
-    """Whether a candidate has the axis of the name, or the usual one."""
+    """Whether a candidate has the axis of the name, or an axis that the words of both imply."""
     if wanted.axis or not candidate.axis:
         return wanted.axis == candidate.axis
     if candidate.value.endswith("linear.x") and "speed" in wanted.words:
-        return True  # a robot drives forwards
+        return True  # the speed of a robot is mostly that along x
     there = {*candidate.own, *candidate.implied}
     return not ALONG.isdisjoint({*wanted.words} & there)
 
@@ -196,13 +196,13 @@ def _is_in_unit(wanted: Wanted, type_: Type, candidate: Candidate) -> bool:
             return False
         is_magnetic = dimension == parse_unit("T").dimension
         if candidate.meaning.is_scaled or (is_magnetic and candidate.unit is None):
-            return False  # magnetic fields are often scaled by 1000: a unit must be stated
+            return False  # magnetic fields are often scaled by 1000, so the unit must be stated
         return dimension in there if there else candidate.meaning.sort is Sort.OPEN
     return not (said and there) or not said.isdisjoint(there)
 
 
 def _score(wanted: Wanted, candidate: Candidate) -> float:
-    """The score: how well the words are found, 0 if one is not, minus a bit per foreign word."""
+    """How well the words of a name are found: 0 if one is missing, less for each foreign word."""
     total = 0.0
     ignorable = EMPTY | (_REQUESTS if wanted.type is None else frozenset())
     asked = [word for word in wanted.words if word not in ignorable] or list(wanted.words)
@@ -222,14 +222,14 @@ def _score(wanted: Wanted, candidate: Candidate) -> float:
         + 0.02 * candidate.value.startswith("hypot(")
     )
     if wanted.type is not None and wanted.type.kind is candidate.kind is Kind.LABEL:
-        better += 0.2  # a text names its label, a number does not
+        better += 0.2  # a text is the label itself, a number only stands for it
     worse = sum(0.02 if word in candidate.own else 0.01 for word in foreign)
     worse += 0.06 * _is_of_another_quantity(candidate, foreign)
     return total / len(asked) + better - worse
 
 
 def _is_of_another_quantity(candidate: Candidate, foreign: Iterable[str]) -> bool:
-    """Whether its topic is named after another quantity, as an acceleration among positions."""
+    """Whether the topic is named after a quantity of another dimension than the candidate's."""
     named = {*words_of(candidate.topic.name)} & {*foreign}
     others = [own for word in named if (own := dimensions_of([word]))]
     return any(own.isdisjoint(candidate.dimensions) for own in others if candidate.dimensions)

@@ -85,7 +85,7 @@ EMPTY = _set(
 """Words without meaning for the match."""
 
 PLACES = _set("base body frame link joint fmu")
-"""The words of `EMPTY` that count if a field has no other word."""
+"""The words of `EMPTY` that are meaningful if a field has no other word."""
 
 WEAK = frozenset({"imu", "ground", "horizontal"})
 """Words that need not be found if there is no foreign word."""
@@ -170,11 +170,11 @@ _ENDINGS = (
     "hz=Hz mm=mm cm=cm m=m ms=ms s=s mv=mV v=V ma=mA a=A w=W pa=Pa celsius=degC degc=degC "
     "percent=% pct=% kg=kg"
 )
-"""Units by what stands behind a `_` of a name, the longest first."""
+"""Units by the ending of a name after a `_`, the longest first."""
 
 
 def words_of(text: str) -> list[str]:
-    """The words of a name, a topic or a path, each by the one that stands for it.
+    """Split a name, a topic or a path into words, and replace each by its canonical word.
 
     >>> words_of("/robot1/handDistance.twist_vx"), words_of("e_stop")
     (['robot', '1', 'hand', 'distance', 'twist', 'speed', 'x'], ['estop'])
@@ -195,7 +195,7 @@ def words_of(text: str) -> list[str]:
 
 
 def is_found(word: str, there: Iterable[str]) -> bool:
-    """Whether a word stands among others, maybe in another form: `wheel` and `wheels`."""
+    """Whether a word is among others, also in singular or plural: `wheel` and `wheels`."""
     return any(
         word == one or (min(len(word), len(one)) > 3 and one.rstrip("s") == word.rstrip("s"))
         for one in there
@@ -203,7 +203,7 @@ def is_found(word: str, there: Iterable[str]) -> bool:
 
 
 def parts_of(word: str, known: Set[str]) -> list[str]:
-    """A word, or two that others write apart.
+    """Split a compound word if both parts are known words.
 
     >>> parts_of("handbrake", {"hand", "brake"}), parts_of("brake", {"hand", "brake"})
     (['hand', 'brake'], ['brake'])
@@ -214,7 +214,7 @@ def parts_of(word: str, known: Set[str]) -> list[str]:
 
 
 def is_measured_in(word: str, unit: Unit) -> bool:
-    """Whether what a word says is the only quantity that has such a unit.
+    """Whether a word names the only quantity that is measured in such a unit.
 
     >>> is_measured_in("voltage", parse_unit("mV")), is_measured_in("speed", parse_unit("m/s"))
     (True, False)
@@ -224,7 +224,7 @@ def is_measured_in(word: str, unit: Unit) -> bool:
 
 
 def dimensions_of(words: Sequence[str]) -> frozenset[Dimension]:
-    """The quantities that words may speak of, by the last of them that speaks of one; or none.
+    """The possible dimensions of a quantity, by the last word that names one; empty if none does.
 
     >>> sorted(map(str, dimensions_of(["yaw", "rate"]))), dimensions_of(["mode"])
     (["(('rad', 1), ('s', -1))"], frozenset())
@@ -245,7 +245,7 @@ def dimensions_of(words: Sequence[str]) -> frozenset[Dimension]:
 
 
 def unit_in_name(field: str) -> str:
-    """The unit that the end of a field's name says, such as `speed_m_s`; empty if there is none.
+    """The unit at the end of a field's name, such as `speed_m_s`; "" if there is none.
 
     >>> unit_in_name("true_airspeed_m_s"), unit_in_name("batteryPercent"), unit_in_name("pose.x")
     ('m/s', '%', '')

@@ -1,4 +1,7 @@
-"""A first specification from a recording, and a first campaign of tests; both run at once."""
+"""Starters: a first specification made from a recording, and a first test campaign.
+
+Both run without changes.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ _ENDING = ".txt"
 
 
 def campaign_files() -> dict[str, str]:
-    """The texts of its files, by name: code under test, requirements, and the campaign.
+    """The files of the test campaign, text by name: code under test, requirements, campaign.
 
     >>> sorted(campaign_files())
     ['campaign.py', 'lift.py', 'lift.rv']

@@ -1,4 +1,4 @@
-"""The values seen under the names and topics of a recording, and possible declarations of these."""
+"""Possible declarations of the names and topics of a recording, by the values seen."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _WHOLES = re.compile(rf"(?:{_WHOLE.pattern}(?:\n|\Z))+", re.ASCII)
 
 
 class SeenValues:
-    """The values seen under one name; a CSV cell 0 or 1 is a bit: number or truth value."""
+    """The values seen of one name; a CSV cell 0 or 1 is a bit, a number or a truth value."""
 
     def __init__(self) -> None:
         self.kinds: set[Kind] = set()
@@ -54,10 +54,11 @@ class SeenValues:
                 self.other = True
 
     def add_texts(self, cells: Iterable[str]) -> None:
-        """Take cells of CSV, of which those that are empty say nothing."""
+        """Take cells of CSV; empty cells are ignored."""
         different = dict.fromkeys(cells)
         different.pop("", None)
-        # Of what is known to be a number, and has many values, further ones tell nothing new.
+        # If the name is a number with many values, further numbers change nothing. One pattern for
+        # all cells is faster than reading them one by one.
         known = _NUMBERS if Kind.REAL in self.kinds else _WHOLES if Kind.INT in self.kinds else None
         if known is not None and len(self.labels) > MOST_LABELS:
             lines = "\n".join(different)
@@ -85,7 +86,7 @@ class SeenValues:
             self.labels[text] = None
 
     def add_payload(self, payload: Mapping[str, object]) -> None:
-        """Take an object."""
+        """Take a JSON object, the payload of an event."""
         self.payloads += 1
         for key, value in payload.items():
             if value is not None:
@@ -93,7 +94,7 @@ class SeenValues:
 
 
 def shapes_seen(seen: Mapping[str, SeenValues]) -> Shapes:
-    """The possible declarations of names."""
+    """The possible declarations of names, by the values seen."""
     declared: dict[str, Shape] = {}
     left_out: dict[str, str] = {}
     for name, entry in seen.items():
@@ -108,10 +109,10 @@ def shapes_seen(seen: Mapping[str, SeenValues]) -> Shapes:
 
 
 def _shape(seen: SeenValues) -> Shape | str:
-    """The shape, or why there is none.
+    """The possible declaration of a name, or the reason why there is none.
 
-    What would compile and mislead is left out with a reason: a signal has one kind in the language,
-    so values of two kinds would make each sample of the rarer one an error.
+    Values of different kinds are a reason: a signal has one kind, so that the specification would
+    compile, but each sample of the rarer kind would be an error.
     """
     if seen.payloads:
         if seen.kinds - {Kind.BOOL} or seen.other:
@@ -134,7 +135,7 @@ def _shape(seen: SeenValues) -> Shape | str:
         return Shape(Kind.BOOL)
     if seen.kinds <= {Kind.INT, Kind.REAL}:
         return Shape(Kind.REAL if Kind.REAL in seen.kinds else Kind.INT)
-    if seen.kinds != {Kind.LABEL} or seen.bits:  # 0 and 1 among text may be labels, or truths
+    if seen.kinds != {Kind.LABEL} or seen.bits:  # 0 and 1 among text may be labels or truth values
         return "numbers and text"
     if len(seen.labels) > MOST_LABELS:
         return f"text with more than {MOST_LABELS} values"
@@ -187,7 +188,7 @@ def message_shapes(source: MessageFile) -> Shapes:
     found = shapes_seen(seen)
     for full, shape in found.declared.items():
         declared[full] = replace(shape, source=texts[full][0])
-    for topic in source.topics.values():  # of texts, and the like, each message is an event
+    for topic in source.topics.values():  # a topic without a declared field becomes an event
         sources = {shape.source for shape in declared.values()}
         if not faults[topic.name] and topic.name not in sources:
             declared[dotted(topic.name)] = Shape(None, source=topic.name)
@@ -196,7 +197,7 @@ def message_shapes(source: MessageFile) -> Shapes:
 
 
 def _fault(topic: Topic, source: MessageFile) -> str:
-    """Why the first message of a topic cannot be read; empty if it can."""
+    """Why the first message of a topic cannot be read; "" if it can."""
     if topic.fault:
         return topic.fault
     try:
@@ -224,7 +225,7 @@ def _unit(leaf: str, topic: Topic) -> str:
 
 
 def _elements(topic: Topic, looked: Looked) -> Iterator[tuple[str, str, Shape]]:
-    """The named elements of arrays, such as the positions of joints: array, element, shape."""
+    """Yield array, name and shape of the named elements of arrays, such as joint positions."""
     for array, names in arrays_with_names(topic).items():
         shape = Shape(topic.leaves[f"{array}[]"], unit=_unit(f"{array}[]", topic))
         for element in looked.joints.get(names, ()):
@@ -233,7 +234,7 @@ def _elements(topic: Topic, looked: Looked) -> Iterator[tuple[str, str, Shape]]:
 
 
 def _texts_seen(source: MessageFile, texts: Mapping[str, tuple[str, str]]) -> dict[str, SeenValues]:
-    """The texts of a recording; a topic on which nothing was said has none."""
+    """The texts seen, by name; `texts`: the topic and field of each name."""
     seen = {name: SeenValues() for name in texts}
     reading: dict[str, list[tuple[SeenValues, Get]]] = {}
     for name, (topic, leaf) in texts.items():

@@ -1,4 +1,4 @@
-"""The values of a recording under one name, and their course over time."""
+"""The values of a name in a recording, and their course over time."""
 
 from __future__ import annotations
 
@@ -18,34 +18,34 @@ from rvmon.trace.time import TICKS_PER_SECOND
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-FEW = 5  # the fewest occurrences of which regularity can be told
+FEW = 5  # with fewer occurrences nothing is said about regularity
 STEADY = 3  # the longest gap of a steady signal, in multiples of the mean gap
-MOST_INSTANTS = 10_000  # occurrences that are kept of one name
+MOST_INSTANTS = 10_000  # the most instants that are kept for a name
 
 EVENT_SHARE = 0.1
-"""Truth values that are true in single samples only, and in at most this share, are events."""
+"""A truth value that is true in single samples only, and in at most this share, is an event."""
 
 
 class Shape(Struct, frozen=True):
-    """The shape of the values of one name, whatever their times."""
+    """A possible declaration of a name."""
 
     kind: Kind | None  # of a signal; `None` for an event
     labels: tuple[str, ...] = ()  # the values of a label signal, in order of appearance
-    fields: Mapping[str, Kind] = field(default_factory=dict)  # of an event with payload
-    unit: str = ""  # of a number, as the messages say it; empty if they do not
-    source: str = ""  # the topic; empty of columns
-    is_part: bool = False  # whether it comes with other fields, in each message of its topic
+    fields: Mapping[str, Kind] = field(default_factory=dict)  # payload fields of an event
+    unit: str = ""  # the unit of a number, or ""
+    source: str = ""  # the topic; "" for a column
+    is_part: bool = False  # whether every message of its topic has other fields, too
 
 
 class Shapes(Struct, frozen=True):
     """The names of a recording that a specification can declare, and those that it cannot."""
 
     declared: Mapping[str, Shape]
-    left_out: Mapping[str, str]
+    left_out: Mapping[str, str]  # by name, the reason
 
 
 def reasons_of(left_out: Mapping[str, str], most: int) -> Iterator[str]:
-    """Why names are left out: each reason behind its names, of which at most so many are listed.
+    """Yield each reason why names are left out, after these names; at most `most` are listed.
 
     >>> list(reasons_of({"a": "lists", "b": "no value", "c": "lists"}, 1))
     ['a and 1 more: lists', 'b: no value']
@@ -58,34 +58,37 @@ def reasons_of(left_out: Mapping[str, str], most: int) -> Iterator[str]:
         yield f"{', '.join(names[:most])}{more}: {why}"
 
 
-MOST = 160  # stretches of a course
+MOST = 160  # the most stretches of a course
 
 
 class Stretch(Struct, frozen=True):
     """The updates in a stretch of time."""
 
-    updates: int  # their number; of an event its occurrences
+    updates: int  # their number; for an event, also reports that it did not occur
     low: float | None  # least number; `None` if there is none
-    high: float | None  # greatest number
+    high: float | None  # greatest number; `None` if there is none
 
 
 class Course:
-    """The stretches from the first instant on, all of one length, which doubles as time goes on."""
+    """The course of values over time, in stretches of equal length.
+
+    The length doubles whenever the recording gets too long for `MOST` stretches.
+    """
 
     def __init__(self) -> None:
         self.start = 0  # the first instant, ticks
         self.length = 1 << 16  # of a stretch, ticks
-        self.labels: dict[str, int] = {}  # the number that each label is drawn at
+        self.labels: dict[str, int] = {}  # the number that stands for each label in a drawing
         self._updates = np.zeros(MOST, np.int64)
         self._lows = np.full(MOST, inf)
         self._highs = np.full(MOST, -inf)
 
     def note(self, times: NDArray[np.int64], numbers: NDArray[Any]) -> None:
-        """Take updates; of an event also that nothing happened.
+        """Take updates; for an event, also reports that it did not occur.
 
         Args:
             times: int64[n] ticks, ascending, not before the start.
-            numbers: [n] what was said; what is not finite is not drawn.
+            numbers: [n] the values; those that are not finite are counted, but not drawn.
         """
         self._reach(int(times[-1]))
         places = (times - self.start) // self.length
@@ -95,7 +98,7 @@ class Course:
         np.maximum.at(self._highs, places[drawn], numbers[drawn])
 
     def _reach(self, t: int) -> None:
-        """Make the stretches so long that they go on to an instant."""
+        """Lengthen the stretches until they cover an instant."""
         while (t - self.start) // self.length >= MOST:
             self._updates = _halved(np.add, self._updates, 0)
             self._lows = _halved(np.minimum, self._lows, inf)
@@ -104,11 +107,11 @@ class Course:
 
     @property
     def extremes(self) -> set[float]:
-        """The least and the greatest numbers of the stretches."""
+        """The least and greatest numbers of all stretches."""
         return {*self._lows.tolist(), *self._highs.tolist()} - {-inf, inf}
 
     def until(self, end: int) -> list[Stretch]:
-        """The stretches up to an instant, however much later it is than what was said last."""
+        """The stretches up to an instant (ticks), which may be long after the last update."""
         self._reach(end)
         count = max(1, -(-(end - self.start + 1) // self.length))
         stretches = zip(
@@ -121,33 +124,33 @@ class Course:
 
 
 def _halved(join: np.ufunc, values: NDArray[Any], nothing: float) -> NDArray[Any]:
-    """Pairs of stretches joined to one each, followed by as many empty ones."""
+    """Join pairs of stretches, and append as many empty ones."""
     joined = join(values[::2], values[1::2])
     return np.concatenate((joined, np.full_like(joined, nothing)))
 
 
 Updates = tuple["NDArray[np.int64]", "NDArray[Any]", "NDArray[np.bool_]"]
-"""As `Column.take` has them."""
+"""The arguments of `Column.take`."""
 
 
 class Column(Struct):
-    """One name of a recording, followed over time."""
+    """A name of a recording, with statistics of its values over time."""
 
     name: str  # as in the recording
-    shape: Shape  # of its values; of a guessed event without a kind
+    shape: Shape  # becomes an event if `guessed_event`
     guessed_event: bool = False  # whether its truth values were taken for an event
-    updates: int = 0  # the number of updates, or occurrences
+    updates: int = 0  # the number of updates; of a guessed event, of occurrences
     low: float | None = None  # least number seen; `None` if it is no number
-    high: float | None = None  # greatest number seen
+    high: float | None = None  # greatest number seen; `None` if it is no number
     rate: float = 0.0  # updates per second; 0 if there were too few
     longest_gap: int = 0  # between two updates, ticks
-    longest_silence: int = 0  # the same, or from the last update to the end
+    longest_silence: int = 0  # the longest gap, also from the last update to the end, ticks
     first: int | None = None  # the instant of the first update, ticks; `None` if there was none
-    # whether it is unknown somewhere: at the first sample, or by a value
+    # whether it was unknown, at the first sample or later
     gaps_in_value: bool = False
-    # of an event its occurrences, of a truth value where it became true; ticks
+    # the first occurrences of an event, or instants where a truth value became true; ticks
     instants: list[int] = field(default_factory=list)
-    course: Course = field(default_factory=Course)  # of its values over time
+    course: Course = field(default_factory=Course)
     _last: int = 0
     _trues: int = 0
     _falses: int = 0
@@ -156,21 +159,21 @@ class Column(Struct):
 
     @property
     def is_finite(self) -> bool:
-        """Whether it is a number, and nowhere an infinite one."""
+        """Whether all values are finite numbers."""
         return self.low is not None and self.high is not None and isfinite(self.high - self.low)
 
     @property
     def changes(self) -> bool:
-        """Whether it is such a number, and not always the same."""
+        """Whether all values are finite numbers, and not all are the same."""
         return self.is_finite and self.low != self.high
 
     @property
     def is_event(self) -> bool:
-        """Whether it is declared as an event."""
+        """Whether the name is declared as an event."""
         return self.shape.kind is None
 
     def updates_in(self, times: NDArray[np.int64], cells: Cells) -> Updates:
-        """The updates of a signal in rows."""
+        """The updates in rows of a signal, as the arguments of `take`."""
         values: NDArray[Any] = cells.values
         known = values == values
         if cells.says is not None:
@@ -192,9 +195,9 @@ class Column(Struct):
 
         Args:
             times: int64[n] ticks, ascending.
-            values: [n] numbers, truth values, the places of labels; of an event 1 where it occurs,
+            values: [n] numbers, truth values or numbers of labels; for an event, 1 where it occurs,
                 0 where it does not, NaN where it occurs with a payload.
-            known: bool[n] of which the value is.
+            known: bool[n], whether each value is known.
         """
         if not len(times):
             return
@@ -231,7 +234,7 @@ class Column(Struct):
         self.instants += times[: MOST_INSTANTS - len(self.instants)].tolist()
 
     def end(self, start: int, end: int, samples: int) -> None:
-        """Take in between which instants the recording was, and of how many samples."""
+        """Finish the statistics, given the recording's start and end (ticks) and sample count."""
         self.gaps_in_value |= self.first != start
         if self.first is None:
             return
@@ -248,8 +251,8 @@ class Column(Struct):
         if self._falses:
             most = EVENT_SHARE * (self._trues + self._falses)
             return self._runs_are_single and self._trues <= most
-        # It is only ever reported when true: what keeps coming is always true, and no event; nor is
-        # what others bring along.
+        # The value was never false. If it keeps coming, it is a signal that is always true. If it
+        # comes with the other fields of its messages, its reports tell nothing.
         if self.shape.is_part:
             return False
         longest = max(self.longest_silence, (self.first or start) - start)
@@ -258,13 +261,13 @@ class Column(Struct):
 
 
 class Profile(Struct, frozen=True):
-    """A recording, looked over."""
+    """The statistics of a recording."""
 
     path: str  # of the recording
-    columns: tuple[Column, ...]  # the declared ones, in order
-    left_out: Mapping[str, str]  # by name, why
+    columns: tuple[Column, ...]  # those that are declared and have a value, in order
+    left_out: Mapping[str, str]  # by name, why it has no column
     start: int  # the first instant, ticks
     end: int  # the last instant, ticks
     samples: int  # their number
-    lateness: int  # the greatest step of its time backwards, ticks; 0 if it is in order
-    outages: tuple[Outage, ...] = ()  # its outages, as far as it states them
+    lateness: int  # the most by which a sample was late, ticks; 0 if all are in order
+    outages: tuple[Outage, ...] = ()  # the outages that the recording states

@@ -1,4 +1,4 @@
-"""Requirements that hold of a recording, to start from; and it as the text of a specification."""
+"""Skeletons: requirements that a recording meets, and a starter specification made of them."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from rvmon.recordings.starter.observed_values import Column, Profile, reasons_of
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TICKS_PER_SECOND
 
-MOST_CANDIDATES = 12  # names that are tried as trigger and as response
-FEWEST = 2  # requirements that are written at least
+MOST_CANDIDATES = 12  # the most names that are tried as trigger and as response
+FEWEST = 2  # at least this many requirements are written
 
 _MOST_RANGES = 3
 _MOST_SOURCES = 2
 
-_OFTEN = 3  # an event that comes so many times as often as another does not answer it
+_OFTEN = 3  # an event that is more frequent than another by this factor is no response to it
 
 
 class Skeleton(Struct, frozen=True):
@@ -39,7 +39,7 @@ class Skeleton(Struct, frozen=True):
 
 
 def skeletons_of(profile: Profile) -> list[Skeleton]:
-    """Requirements that the recording itself meets, those that say most first."""
+    """Requirements that the recording itself meets, the most informative first."""
     found = [*_responses(profile.columns), *_ranges(profile.columns), *_sources(profile.columns)]
     others = _others(profile)
     bodies = {skeleton.body for skeleton in found}
@@ -58,7 +58,7 @@ def name_text(name: str) -> str:
 
 
 def _ranges(columns: Sequence[Column]) -> Iterator[Skeleton]:
-    """The ranges of numbers that change: one of each topic, those with a unit first."""
+    """Skeletons about the ranges of changing numbers: one per topic, those with a unit first."""
     changing = sorted(
         (column for column in columns if column.changes), key=lambda column: not column.shape.unit
     )
@@ -69,7 +69,7 @@ def _ranges(columns: Sequence[Column]) -> Iterator[Skeleton]:
 
 
 def _sources(columns: Sequence[Column]) -> Iterator[Skeleton]:
-    """Skeletons about the rate of reports: one signal of each topic."""
+    """Skeletons about the age of signals: one signal per topic."""
     signals = [
         column
         for column in columns
@@ -93,7 +93,10 @@ def _others(profile: Profile) -> Iterator[Skeleton]:
 
 
 def _responses(columns: Sequence[Column]) -> Iterator[Skeleton]:
-    """The pair of which the second follows the first always, and earliest."""
+    """A skeleton of the trigger and response with the shortest longest wait, if there are any.
+
+    The response must follow each occurrence of the trigger. Triggers that are events come first.
+    """
     candidates = [column for column in columns if column.instants][:MOST_CANDIDATES]
     found = []
     for trigger in candidates:
@@ -144,7 +147,7 @@ def _range(column: Column) -> Skeleton:
 
 
 def outward(value: float, *, up: bool) -> float:
-    """A number of three digits that is not within it.
+    """Round a number outwards to three digits: up, or down.
 
     >>> outward(2.99994, up=True), outward(0.123456, up=False), outward(0.35, up=False)
     (3.0, 0.123, 0.35)
@@ -192,7 +195,7 @@ def _ever(column: Column) -> Skeleton:
 
 
 def round_up(ticks: int) -> str:
-    """A duration of one or two digits that is at least this long.
+    """Round a duration (ticks) up to one or two digits, as text.
 
     >>> round_up(1_234_000_000), round_up(730_000_000), round_up(2_000_000_000), round_up(70)
     ('1.5 s', '800 ms', '2 s', '80 ns')
@@ -207,12 +210,12 @@ def round_up(ticks: int) -> str:
     return format_duration(rounded)
 
 
-_LONGEST = 4_000_000_000 * TICKS_PER_SECOND  # as an allowance; rows are sorted, however late
-_LISTED = 6  # names that are listed with the reason why they are not declared
+_LONGEST = 4_000_000_000 * TICKS_PER_SECOND  # the longest `max delay`; rows are sorted all the same
+_LISTED = 6  # the most names that are listed for a reason why they are not declared
 
 
 def starter_text(profile: Profile) -> str:
-    """A starter specification in the canonical layout; it runs on the recording as it is."""
+    """A starter specification in the canonical layout, which runs on the recording unchanged."""
     skeletons = skeletons_of(profile)
     read = {name for skeleton in skeletons for name in skeleton.names}
     lines = [*_header(profile), ""]
@@ -221,7 +224,7 @@ def starter_text(profile: Profile) -> str:
         lines += ["", *_requirement(f"R{number}", skeleton)]
     others = [column for column in profile.columns if column.name not in read]
     if others:
-        # What is declared and not read would be warned of.
+        # As comments: the checker would warn of declarations that no requirement reads.
         lines += ["", "# What else there is: take away the `#` before what a requirement reads."]
         lines += [f"# {_declaration(column)}" for column in others]
     if profile.left_out:
@@ -294,5 +297,5 @@ def _requirement(name: str, skeleton: Skeleton) -> Iterator[str]:
 
 
 def _plain(text: str) -> str:
-    """Text that cannot end a line, a comment or a string."""
+    """Replace the characters that could end a line, a comment or a string."""
     return "".join(char if char.isprintable() and char not in '"\\' else "_" for char in text)
