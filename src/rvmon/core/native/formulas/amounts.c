@@ -1,5 +1,6 @@
-/* The fold of a window as a number that expressions read (CODE_WINDOW), and when it can change though
- * no input does. Numbers are rounded once, from exact sums; unknown where a possible member matters. */
+/* The fold of a window as a number that expressions read (CODE_WINDOW), and when it can change although
+ * no input does. Numbers are rounded once, from exact sums; they are unknown if a possible member
+ * matters. */
 #include "formulas/exact.h"
 #include "formulas/formulas.h"
 #include "formulas/members.h"
@@ -9,9 +10,9 @@
 
 /* ---- MIN and MAX */
 
-/* A monotonic wedge: an entry that is not better than the new number expires before it, and can never
- * be the extreme again. The front is then the extreme of the window; amortised O(1). An unknown number
- * beats every entry, and a known one beats none that is unknown. */
+/* A monotonic wedge: an entry that is not better than the new number expires before it and can never be
+ * the extreme again, so it is dropped. The front is then the extreme of the window; amortised O(1). An
+ * unknown number beats every entry, and no known number beats an unknown one. */
 bool push_extreme(window *w, const rv_number *number)
 {
     stretches *s = w->s;
@@ -53,8 +54,8 @@ static rv_number share_of(int64_t number, int64_t by)
     return real_of(exact_nearest(sum, by));
 }
 
-/* An exact sum over `by`: whole if all numbers were. Unknown if some were, or if the two readings, with
- * and without possible members, differ. */
+/* An exact sum divided by `by`, as a whole number if all numbers were whole. Unknown if some number was,
+ * or if the two readings, with and without possible members, differ. */
 static rv_number sum_of(const window *w, int64_t by)
 {
     const uint32_t *sum = w->x->limb;
@@ -69,7 +70,7 @@ static rv_number sum_of(const window *w, int64_t by)
     return exact_whole(sum, &whole) ? whole_of(whole) : UNKNOWN_NUMBER;
 }
 
-/* The fold now. */
+/* The current value of the fold. */
 static rv_number comes_to(const window *w)
 {
     const stretches *s = w->s;
@@ -104,7 +105,7 @@ static rv_number comes_to(const window *w)
 
 /* ---- instants */
 
-/* Whether the fold stays while the last entry grows. */
+/* Whether the fold stays the same while the last entry grows. */
 static bool is_level(const window *w, bool known)
 {
     const stretches *s = w->s;
@@ -119,7 +120,7 @@ static bool is_level(const window *w, bool known)
     }
 }
 
-/* The next instant at which the fold can change though no input does; it may be early, never late. */
+/* The next instant at which the fold can change although no input does; it may be early, never late. */
 static int64_t moves_at(const window *w, bool known)
 {
     const stretches *s = w->s;

@@ -1,16 +1,16 @@
 /* Distinct numbers in a window: a hash table from a number to the latest entry that has it.
  *
  * Open addressing with linear probing; a slot holds a place in the ring s[1], -1: free. Expired entries
- * are not removed: a slot whose place is not in the ring any more, or is marked MEMBER_OLDER, counts as
- * deleted and is reused. The table is rebuilt when it is half full or the ring has moved. Expected
- * O(1) a member. */
+ * are not removed: a slot whose place is no longer in the ring, or is marked MEMBER_OLDER, is treated as
+ * deleted and reused. The table is rebuilt when it is half full or the ring has moved. Expected cost
+ * O(1) per member. */
 #include "formulas/formulas.h"
 #include "formulas/members.h"
 #include "input/input.h"
 
 #include <string.h>
 
-/* A hash that is equal for equal numbers, so a whole number that is a double is hashed as that double.
+/* A hash that is equal for equal numbers: a whole number that equals a double is hashed as that double.
  * Multiplication by 2^64 over the golden ratio (Knuth, TAOCP 3, 6.4). */
 static uint32_t hash_of(const rv_number *number)
 {
@@ -21,15 +21,15 @@ static uint32_t hash_of(const rv_number *number)
         real = (double)number->as.whole;
     }
     if ((number->kind == RV_REAL) || (real == (double)number->as.whole)) {
-        real += 0.0; /* a 0 has no sign */
+        real += 0.0; /* makes -0.0 equal 0.0 */
         (void)memcpy(&bits, &real, sizeof bits);
     }
     bits *= UINT64_C(0x9E3779B97F4A7C15);
     return (uint32_t)(bits >> 32);
 }
 
-/* The entry at a place of the ring, if it is in it and the latest with its number; -1: the slot is
- * stale. */
+/* The entry at a place of the ring, if the place is in use and the entry is the latest with its number;
+ * -1: the slot is stale. */
 static int32_t latest_at(const window *w, int32_t place)
 {
     const stretches *own = w->s + 1;
@@ -80,8 +80,8 @@ static bool make_table(window *w)
     return true;
 }
 
-/* The place of the latest entry with a number; -1: none. Leaves in `w->slot` where note_latest() puts
- * the entry that is appended next. */
+/* The place of the latest entry with a number; -1: none. Sets `w->slot`, where note_latest() puts the
+ * entry that is appended next. */
 int32_t find_latest(window *w, const rv_number *number)
 {
     stretches *s = w->s;
@@ -114,7 +114,7 @@ int32_t find_latest(window *w, const rv_number *number)
     return -1;
 }
 
-/* Enter the last entry of the ring, whose number find_latest() was asked for. */
+/* Put the last entry of the ring, whose number find_latest() looked up, into the table. */
 void note_latest(window *w)
 {
     stretches *s = w->s;

@@ -1,9 +1,9 @@
-/* Exact sums as long fixed point numbers in two's complement, limbs of 32 bits, the lowest first.
+/* Exact sums as long fixed-point numbers in two's complement, with limbs of 32 bits, the lowest first.
  *
- * The lowest bit of a sum is worth 2^-LOWEST, below the smallest double (2^-1074); a sum of squares has
- * twice as many bits on either side. Products of 64 bits are added limb by limb with carry, so adding
- * costs a few limbs, comparing with 0 reads the sign, and only variance multiplies sum by sum
- * (O(SUM_LIMBS^2), zero limbs skipped).
+ * The lowest bit of a sum is worth 2^-LOWEST, less than the smallest double (2^-1074); a sum of squares
+ * has twice as many bits on either side. Products of 64 bits are added limb by limb with carry. So
+ * adding costs a few limbs, comparing with 0 reads the sign, and only the variance multiplies sum by
+ * sum (O(SUM_LIMBS^2), skipping zero limbs).
  *
  * Source: Kulisch, Computer Arithmetic and Validity, 2008 (the long accumulator). */
 #include "formulas/exact.h"
@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-#define LOWEST 1088 /* 34 limbs; of squares twice that */
+#define LOWEST 1088 /* 34 limbs; for squares twice that */
 #define VARIANCE_LIMBS (SQUARE_LIMBS + 4)
 
 /* A number: +-size * 2^bit, in units of the lowest bit of a sum. */
@@ -43,7 +43,7 @@ static fixed_point fixed_of(const rv_number *number)
 }
 
 /* x += a * b * 2^bit, or -=: the product of 128 bits is shifted within limbs and added with carry. The
- * carry out of the highest limb is dropped, as two's complement has it. */
+ * carry out of the highest limb is dropped, as usual in two's complement. */
 static void add_product(uint32_t *x, int32_t limbs, uint64_t a, uint64_t b, int32_t bit, bool off)
 {
     const uint64_t low = (a & UINT32_MAX) * (b & UINT32_MAX);
@@ -115,7 +115,7 @@ bool exact_is_enough(const uint32_t *sum, bool strict)
     return is_enough(sum, SUM_LIMBS, strict);
 }
 
-/* The three highest limbs that are not mere sign, times 2^exponent: relative error below 2^-50. */
+/* The three highest limbs that are not just sign, times 2^exponent; the relative error is below 2^-50. */
 static double roughly(const uint32_t *x, int32_t limbs, int32_t *exponent)
 {
     const uint32_t sign = is_negative(x, limbs) ? UINT32_MAX : 0;
@@ -137,7 +137,7 @@ double exact_roughly(const uint32_t *sum, int32_t *exponent)
     return roughly(sum, SUM_LIMBS, exponent);
 }
 
-/* rest = count * squares - sum^2, which is count^2 times the variance; in units of 2^-(2 LOWEST). */
+/* rest = count * squares - sum^2, which is count^2 times the variance, in units of 2^-(2 LOWEST). */
 static void scaled_variance(uint32_t *rest, const uint32_t *sum, const uint32_t *squares, int64_t count)
 {
     uint32_t size[SUM_LIMBS];
@@ -187,8 +187,8 @@ typedef struct {
     bool squared;
 } quotient;
 
-/* The sign of 2 q - (a + b): on which side of the middle of a and b the quotient lies; exact, as all is
- * multiplied by the divisor. */
+/* The sign of 2 q - (a + b), that is, on which side of the midpoint of a and b the quotient lies. Exact,
+ * as everything is multiplied by the divisor. */
 static int compare_doubled(const quotient *q, double a, double b)
 {
     const double both[2] = {a, b};
@@ -219,8 +219,8 @@ static bool is_odd(double number)
     return (bits & 1) != 0;
 }
 
-/* The nearest double, halves to even; infinite beyond all. Starts from an estimate and goes to the
- * neighbour as long as the quotient lies beyond the middle between both. */
+/* The nearest double, ties to even; infinite if out of range. Starts from an estimate and moves to the
+ * neighbour as long as the quotient lies beyond the midpoint of the two. */
 static double nearest(const quotient *q)
 {
     const double by = (double)q->by;
@@ -229,7 +229,7 @@ static double nearest(const quotient *q)
     double found = ldexp(q->squared ? rough / by / by : rough / by, exponent - q->lowest);
     int32_t steps;
     found = fmax(-0x1.fffffffffffffp1023, fmin(found, 0x1.fffffffffffffp1023));
-    for (steps = 0; steps < 64; steps++) { /* a few; bounded for sums of a forged snapshot */
+    for (steps = 0; steps < 64; steps++) { /* a few are enough; more only in a forged snapshot */
         const double above = nextafter(found, HUGE_VAL);
         const double below = nextafter(found, -HUGE_VAL);
         const int up = compare_doubled(q, found, above);

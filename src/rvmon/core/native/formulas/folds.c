@@ -1,9 +1,9 @@
-/* The fold of a window compared with its limit, and when that comparison can flip though no input
- * changes.
+/* The fold of a window compared with its limit, and the next instant (`due`; NEVER: none) at which that
+ * comparison can flip although no input changes.
  *
- * Between changes at most the last entry grows and the oldest one shrinks, each by one member a step:
- * counts and sums are piecewise linear in time, and the next flip is found by solving for it. The timer
- * may be early (the node is then evaluated again), never late. `due`: that instant, NEVER: none. */
+ * Between changes at most the last entry grows and the oldest one shrinks, each by one member per step.
+ * So counts and sums are piecewise linear in time, and the next flip is found by solving for it. The
+ * timer may be early (then the node is evaluated again), never late. */
 #include "formulas/exact.h"
 #include "formulas/formulas.h"
 #include "formulas/members.h"
@@ -27,8 +27,8 @@ static int64_t least_whole(const rv_number *limit, bool strict)
     return (up >= 0x1p62) ? LIMIT : ((up <= -0x1p62) ? -LIMIT : (int64_t)up);
 }
 
-/* The next instant at which a count can pass `enough`, or an earlier one at which an entry begins or
- * ends to expire, from where it is computed again. */
+/* The next instant at which a count can pass `enough`, or an earlier one at which an entry starts or
+ * ends expiring, where it is computed again. */
 static int64_t count_flips_at(const window *w, int64_t value, int64_t enough, bool better)
 {
     const stretches *s = w->s;
@@ -82,7 +82,7 @@ static uint8_t folded_count(const window *w, int64_t enough, int64_t *due)
 }
 
 /* DISTINCT: at least `spare` entries have to expire before there are too few. An unknown number may be
- * a further one. */
+ * a new one. */
 static uint8_t folded_distinct(const window *w, int64_t enough, int64_t *due)
 {
     const stretches *s = w->s;
@@ -100,8 +100,8 @@ static uint8_t folded_distinct(const window *w, int64_t enough, int64_t *due)
 /* sum + steps * (comes - goes) >= (asked + steps * more) * limit, or > if strict. */
 typedef struct {
     rv_number limit;
-    int64_t asked;             /* times the limit: 1, of MEAN the number of members, of INTEGRAL 10^9 */
-    int64_t more;              /* change of that per step */
+    int64_t asked;             /* factor of the limit: 1; for MEAN, the members; for INTEGRAL, 10^9 */
+    int64_t more;              /* change of `asked` per step */
     rv_number comes;           /* what is added at each step; unknown: nothing */
     rv_number goes;            /* what expires at each step; unknown: nothing */
     bool strict;
@@ -112,7 +112,7 @@ typedef struct {
     uint32_t limb[SUM_LIMBS];
 } exact_rest;
 
-/* The left side less the right one, after some steps. */
+/* The left side minus the right one, after some steps. */
 static exact_rest rest_after(const uint32_t *sum, const comparison *a, int64_t steps)
 {
     exact_rest found;
@@ -133,9 +133,9 @@ static bool is_enough_after(const uint32_t *sum, const comparison *a, int64_t st
     return exact_is_enough(found.limb, a->strict);
 }
 
-/* The first step after which the comparison is not as it is now (`holds`); after `most` it is not. The
- * rest is a line: where it crosses 0 is worked out in doubles, which narrows the range that is then
- * searched by halving, exactly. */
+/* The first step after which the comparison differs from now (`holds`); after `most` steps it does. The
+ * rest is a line. Where it crosses 0 is estimated in doubles, which narrows the range; the exact step is
+ * then found by halving. */
 static int64_t first_step(const uint32_t *sum, const comparison *a, int64_t most, bool holds)
 {
     const exact_rest now = rest_after(sum, a, 0);
@@ -167,8 +167,8 @@ static int64_t first_step(const uint32_t *sum, const comparison *a, int64_t most
     return high;
 }
 
-/* The next instant at which a comparison can flip though no input changes. Completes `a` with what
- * comes and goes at each step from here on. */
+/* The next instant at which a comparison can flip although no input changes. Completes `a` with the
+ * numbers that come and go at each step from here on. */
 static int64_t sum_flips_at(const window *w, const uint32_t *sum, comparison *a, bool better,
                             bool holds)
 {
@@ -211,7 +211,7 @@ static int64_t sum_flips_at(const window *w, const uint32_t *sum, comparison *a,
     return w->t + first_step(sum, a, steps, holds) * w->unit;
 }
 
-/* SUM, INTEGRAL, MEAN: in both readings if there are two. */
+/* SUM, INTEGRAL, MEAN, in both readings if there are two. */
 static uint8_t folded_sum(const window *w, const rv_number *limit, int64_t *due)
 {
     const int32_t readings = w->s[1].apart ? 2 : 1;
@@ -230,7 +230,7 @@ static uint8_t folded_sum(const window *w, const rv_number *limit, int64_t *due)
     return found;
 }
 
-/* VARIANCE: no line between changes, so while it moves it is evaluated at each position. */
+/* VARIANCE is not linear between changes, so while it moves it is evaluated at each position. */
 static uint8_t folded_variance(const window *w, const rv_number *limit, int64_t *due)
 {
     const stretches *s = w->s;
@@ -246,7 +246,7 @@ static uint8_t folded_variance(const window *w, const rv_number *limit, int64_t 
                                  (w->n->b & WINDOW_STRICT) != 0));
 }
 
-/* DELTA: the last number less the first one; UNKNOWN where this position has none. */
+/* DELTA: the last number minus the first one; UNKNOWN if this position has no member. */
 static uint8_t folded_delta(const window *w, const rv_number *limit, int64_t *due)
 {
     const stretches *s = w->s;
@@ -270,8 +270,8 @@ static uint8_t folded_delta(const window *w, const rv_number *limit, int64_t *du
     return truth_if(exact_is_enough(found.limb, (w->n->b & WINDOW_STRICT) != 0));
 }
 
-/* The truth of the comparison. UNKNOWN: the limit is, a number is (of a sum, until it has expired), or
- * there is no member to take a mean of. */
+/* The truth of the comparison. It is UNKNOWN if the limit is unknown, if a number is (for a sum, until it
+ * has expired), or if a mean has no members. */
 uint8_t folded(window *w, int64_t *due)
 {
     const stretches *s = w->s;

@@ -1,4 +1,4 @@
-/* The graph of formulas of the present and the past: re-evaluates what a change reaches.
+/* The graph of formulas of the present and the past: re-evaluates the nodes that a change reaches.
  *
  * Nodes are numbered operands first. Dirty nodes are bits in a set of two levels (`dirty`, and
  * `dirty_words`: which words of it are not 0), so that taking the lowest bit yields them in evaluation
@@ -41,7 +41,7 @@ void mark_parents(run *r, const node_plan *n, int32_t op)
     }
 }
 
-/* AND, OR: the first operand that decides is not sought, as there are few. */
+/* AND, OR: all operands are read, as there are few; stopping at the deciding one does not pay. */
 static uint8_t combined(const run *r, const node_plan *n)
 {
     const int32_t *operands = LIST(PLAN(r), n->operands);
@@ -56,8 +56,8 @@ static uint8_t combined(const run *r, const node_plan *n)
     return found;
 }
 
-/* ELAPSED: `low` ticks since the first position. After an outage at the start that lies between
- * `origin`, the first one that may be there, and `begun`, the first one that surely is. */
+/* ELAPSED: `low` ticks since the first position. After an outage at the start, the first position lies
+ * between `origin`, the first one that may exist, and `begun`, the first one that certainly does. */
 static uint8_t elapsed(run *r, const node_plan *n, int64_t t)
 {
     const int64_t due = sum(r->at.begun, n->low);
@@ -66,8 +66,8 @@ static uint8_t elapsed(run *r, const node_plan *n, int64_t t)
     return (t >= due) ? IS_TRUE : ((t >= may_be_due) ? IS_UNKNOWN : IS_FALSE);
 }
 
-/* PASSED: the same for a number of seconds (program `left` of the atom) since an instant (program
- * `low`: ticks since the first position); `known`: the truth of the operand that guards both. */
+/* PASSED: the same for a number of seconds (program `left` of the atom) since an instant (program `low`,
+ * in ticks since the first position); `known` is the truth of the operand that guards both. */
 static uint8_t passed(run *r, const node_plan *n, int64_t t, uint8_t known)
 {
     const rv_number after = program_value(r, r->part->atoms[n->a].left, NULL);
@@ -86,8 +86,8 @@ static uint8_t passed(run *r, const node_plan *n, int64_t t, uint8_t known)
     return (t >= due) ? IS_TRUE : ((t >= may_be_due) ? IS_UNKNOWN : IS_FALSE);
 }
 
-/* PREVIOUS: the operand at the position before. If the two differ it changes at the next position,
- * though nothing else does. */
+/* PREVIOUS: the operand at the previous position. If it differs from the operand now, the node changes
+ * at the next position although nothing else does. */
 static uint8_t previous(run *r, const node_plan *n, int64_t t, uint8_t operand)
 {
     const uint8_t value = r->seen[n->slot];
@@ -106,16 +106,16 @@ static uint8_t ever(run *r, const node_plan *n, uint8_t left, uint8_t right)
     return value;
 }
 
-/* The left side of a `since` at positions that may not be there: UNKNOWN, but for the constant TRUE of
- * `once`, which holds at all of them or at none. */
+/* The left side of a `since` at positions that may not exist: UNKNOWN, except for the constant TRUE of
+ * `once`, which needs no position. */
 static uint8_t left_there(const run *r, const node_plan *n)
 {
     const node_plan *left = &r->part->nodes[LIST(PLAN(r), n->operands)[0]];
     return ((left->op == NODE_CONSTANT) && (left->a == IS_TRUE)) ? IS_TRUE : IS_UNKNOWN;
 }
 
-/* Tell every operator with state that its operands are UNKNOWN from `t` on, a stretch of positions that
- * may not be there (unknowns.c). */
+/* Step every operator with state through UNKNOWN operands from `t` on, for a stretch of positions that
+ * may not exist (unknowns.c). */
 void remember_unknown(run *r, int64_t t)
 {
     int32_t i;
@@ -153,9 +153,9 @@ static uint8_t evaluated(run *r, int32_t place, int64_t t)
     case NODE_PASSED: return passed(r, n, t, r->truth[operands[0]]);
     case NODE_COMPARED:
         reread(r, n->a, false);
-        mark_parents(r, n, NODE_WINDOW); /* their limit may be another though this truth stays */
+        mark_parents(r, n, NODE_WINDOW); /* their limit may differ although this truth stays */
         if (r->margins != NULL) {
-            margins_mark_changed(r, names_to_lose(r) + place); /* and so can the distance */
+            margins_mark_changed(r, names_to_lose(r) + place); /* and so may the distance */
         }
         return r->atom[n->a];
     default: return node_since(r, n, t, r->truth[operands[0]], r->truth[operands[1]]);
@@ -163,7 +163,7 @@ static uint8_t evaluated(run *r, int32_t place, int64_t t)
 }
 
 /* Store the truth of a node and pass it on along its links. A letter is a sum with one term for each
- * proposition, so it is kept up by differences. */
+ * proposition, so it is updated by differences. */
 static inline void store(run *r, int32_t place, uint8_t value, int64_t t)
 {
     const node_plan *n = &r->part->nodes[place];
@@ -198,15 +198,15 @@ static inline void store(run *r, int32_t place, uint8_t value, int64_t t)
     }
 }
 
-/* Whether a node says that a trigger has been TRUE or FALSE once; such a node has that link first. */
+/* Whether a node says that a trigger has ever been TRUE or FALSE; such a node has that link first. */
 static bool is_determined_node(const run *r, const node_plan *n)
 {
     return (n->links.count > 0) && ((PLAN(r)->links[n->links.first].kind & LINK_DETERMINED) != 0);
 }
 
-/* The truth of a node where every input, and whether there is a position, is unknown. Formulas are
- * UNKNOWN, constants too; what is about knowledge itself (LAPSED, DOUBT, SURE, and connectives over
- * these) is evaluated. */
+/* The truth of a node at a position that may not exist, with all inputs unknown. Formulas are UNKNOWN,
+ * constants too; nodes about knowledge itself (LAPSED, DOUBT, SURE, and connectives over these) are
+ * evaluated. */
 static uint8_t blank_value(run *r, int32_t place, int64_t t)
 {
     const node_plan *n = &r->part->nodes[place];
@@ -222,8 +222,8 @@ static uint8_t blank_value(run *r, int32_t place, int64_t t)
     }
 }
 
-/* Set every formula to its blank value at `t`; a trigger that was known once stays so. All nodes are
- * visited, operands first: this happens at most twice per outage. */
+/* Set every formula to its blank value at `t`; a trigger that was ever known stays so. All nodes are
+ * visited, operands first, which happens at most twice per outage. */
 void blank_out(run *r, int64_t t)
 {
     int32_t i;
@@ -237,7 +237,7 @@ void blank_out(run *r, int64_t t)
     }
 }
 
-/* Store another truth of a node and mark what depends on it. */
+/* Store a new truth of a node and mark the nodes that depend on it. */
 static inline void change(run *r, int32_t place, uint8_t value, int64_t t)
 {
     const list parents = r->part->nodes[place].parents[r->at.phase];
@@ -263,8 +263,8 @@ bool has_dirty_nodes(const run *r)
     return false;
 }
 
-/* Evaluate all dirty nodes at the position at `t`. Parents are numbered higher than operands: those
- * marked meanwhile come later in the same sweep. */
+/* Evaluate all dirty nodes at the position at `t`. Parents are numbered higher than their operands, so
+ * nodes marked meanwhile come later in the same sweep. */
 void work_out(run *r, int64_t t)
 {
     const int32_t words = (r->part->plan->nodes.count + 63) >> 6;
@@ -286,9 +286,9 @@ void work_out(run *r, int64_t t)
     }
 }
 
-/* Evaluate again, at `t`, what reads captured values, which a fork has just taken. Operators of the past
- * keep their state, but for windows that begin with the attempt. `pending`: the events of this sample
- * belong to the next position. */
+/* Evaluate again, at `t`, the nodes that read captured values, after a fork has captured them. Operators
+ * of the past keep their state, except for windows that start with the attempt. `pending`: the events of
+ * this sample belong to the next position. */
 void reevaluate_varying(run *r, int64_t t, bool pending)
 {
     const part_plan *p = r->part->plan;
@@ -303,7 +303,7 @@ void reevaluate_varying(run *r, int64_t t, bool pending)
         uint8_t value;
         if (n->op == NODE_WINDOW) {
             if ((n->since < 0) || (r->captured[n->since].kind == RV_UNKNOWN)) {
-                continue; /* a window that does not begin with the attempt keeps its members */
+                continue; /* a window that does not start with the attempt keeps its members */
             }
             restart_window(r, n);
         }
@@ -314,8 +314,8 @@ void reevaluate_varying(run *r, int64_t t, bool pending)
     }
 }
 
-/* Enter the second phase once every signal is born and every trigger has been TRUE or FALSE: lists of
- * the plan shrink to what still matters, and the timers of the other nodes stop. */
+/* Enter the second phase once every signal is born and every trigger has been TRUE or FALSE: from then
+ * on the shorter lists of the plan are used, and the timers of nodes not needed any more stop. */
 void settle_phase(run *r)
 {
     if ((r->at.phase == 0) && (r->at.births_left == 0) && (r->at.undetermined_left == 0)) {

@@ -1,11 +1,11 @@
-/* The members of a window, kept as entries of equal ones (members.h), with running counters and sums.
+/* The members of a window, kept as entries of equal members (members.h), with running counters and sums.
  *
- * An entry is added to them when its members come and taken off when they expire, so a window of any
- * length costs amortised O(1) a change. Sums are exact (exact.h), so taking off leaves no error.
+ * Members are added to counters and sums when they come and subtracted when they expire, so a window of
+ * any length costs amortised O(1) per change. Sums are exact (exact.h): subtracting leaves no error.
  *
- * DURATION and INTEGRAL have a member for each tick up to the one before the instant at hand, the other
- * folds one for each position. A window is bounded by time (`high`), by number (`most`), or not at all:
- * then only what the fold still needs is kept. */
+ * DURATION and INTEGRAL have a member for each tick before the current instant, the other folds one for
+ * each position. A window is bounded by time (`high`), by number (`most`), or not at all; in the last
+ * case only what the fold still needs is kept. */
 #include "formulas/exact.h"
 #include "formulas/formulas.h"
 #include "formulas/members.h"
@@ -20,7 +20,8 @@ static stretch *kept_of(const stretches *s, int32_t i)
     return stretch_of(s + 1, i);
 }
 
-/* The number in an entry. The bits may be those of a forged snapshot: what is not finite is unknown. */
+/* The number in an entry. Its bits may come from a forged snapshot, so one that is not finite is
+ * unknown. */
 static rv_number number_of(const stretch *kept)
 {
     rv_number found = UNKNOWN_NUMBER;
@@ -41,8 +42,8 @@ static bool is_below_zero(const rv_number *number)
     return (number->kind == RV_WHOLE) ? (number->as.whole < 0) : (number->as.real < 0.0);
 }
 
-/* A number in one reading of a sum: that of a possible member counts where it makes the worse reading
- * smaller, or the better one greater; else it is 0. */
+/* A number in one reading of a sum: that of a possible member counts if it makes the worse reading
+ * smaller, or the better one greater; otherwise it is 0. */
 static rv_number read_as(const rv_number *number, bool maybe, bool better)
 {
     rv_number found = *number;
@@ -67,7 +68,7 @@ bool is_counted(const window *w, int32_t i, bool better)
     return (kept->end != 0) && (better || ((kept->begin & MEMBER_MAYBE) == 0));
 }
 
-/* Keep a second sum, for the better reading, from the first possible member on. */
+/* From the first possible member on, keep a second sum for the better reading. */
 static void split_sums(window *w)
 {
     if (!w->s[1].apart) {
@@ -76,7 +77,7 @@ static void split_sums(window *w)
     }
 }
 
-/* Add `count` members with a number to the sums, or take them off. */
+/* Add `count` members with a number to the sums, or subtract them (`off`). */
 static void add_number(window *w, const rv_number *number, bool maybe, int64_t count, bool off)
 {
     const rv_number worse = read_as(number, maybe, false);
@@ -96,13 +97,13 @@ static void add_number(window *w, const rv_number *number, bool maybe, int64_t c
     }
 }
 
-/* Wraps around with counters of a forged snapshot, which is harmless: they index nothing. */
+/* Add to a counter. Those of a forged snapshot may wrap around, which is harmless: they index nothing. */
 static void add_count(int64_t *x, int64_t more)
 {
     *x = (int64_t)((uint64_t)*x + (uint64_t)more);
 }
 
-/* Count `count` members of an entry in, or out (`off`). */
+/* Add `count` members of an entry to the counters and sums, or subtract them (`off`). */
 static void add_members(window *w, const stretch *kept, int64_t count, bool off)
 {
     const bool maybe = (kept->begin & MEMBER_MAYBE) != 0;
@@ -124,7 +125,7 @@ static void add_members(window *w, const stretch *kept, int64_t count, bool off)
             add_number(w, &number, maybe, count, off);
             add_count(&s->total, more);
         } else {
-            /* DISTINCT counts numbers where entries begin and end. */
+            /* DISTINCT counts numbers when entries start and end. */
         }
     }
 }
@@ -160,11 +161,11 @@ static bool begin_member(window *w, const stretch *kept)
     return true;
 }
 
-/* Prepare for an entry with a number that is not the last one's; returns whether it is to be appended.
+/* Prepare for an entry with another number than the last one's; returns whether to append it.
  *
- * MIN, MAX: a monotonic wedge. DISTINCT: the latest entry of a number stands for it, older ones are
- * marked; without bounds nothing expires, so that one entry for each number is enough. Else, without
- * bounds, only the last entry is kept, and of DELTA the first. */
+ * MIN, MAX: a monotonic wedge. DISTINCT: the latest entry of a number represents it, and older ones are
+ * marked; without bounds nothing expires, so one entry per number is enough. For the other folds without
+ * bounds only the last entry is kept, and for DELTA also the first. */
 static bool admit_member(window *w, const rv_number *number)
 {
     stretches *s = w->s;
@@ -183,16 +184,16 @@ static bool admit_member(window *w, const rv_number *number)
         }
         return !ever || ((number->kind != RV_UNKNOWN) && (same < 0));
     }
-    if (ever) { /* nothing expires: older entries stand in the counters */
+    if (ever) { /* nothing expires: older entries are in the counters */
         s->count = ((w->fold == FOLD_DELTA) && (s->count > 0)) ? 1 : 0;
         s[1].count = s->count;
     }
     return true;
 }
 
-/* Add a member at `w->t`: extend the last entry if it is equal and adjacent, else append one. `maybe`:
- * it may be none. Sums and counts are read both ways; the other folds (MEAN, MAX, ...) take its number
- * for unknown. Returns whether there is an entry that may go on. */
+/* Add a member at `w->t`: extend the last entry if it is equal and adjacent, else append one. `maybe`: it
+ * may not be a member. Sums and counts then have two readings; the other folds (MEAN, MAX, ...) take its
+ * number for unknown. Returns whether there is an entry that may continue. */
 bool add_member(window *w, const rv_number *number, bool maybe)
 {
     stretches *s = w->s;
@@ -228,7 +229,7 @@ bool add_member(window *w, const rv_number *number, bool maybe)
             note_latest(w);
         }
         if ((w->x != NULL) && ((kept.begin & MEMBER_MAYBE) != 0)) {
-            split_sums(w); /* now, though of an INTEGRAL the first tick is still to come */
+            split_sums(w); /* now, although for an INTEGRAL the first tick is still to come */
         }
     }
     if (!w->of_ticks) {
@@ -259,7 +260,7 @@ static void remove_from_oldest(window *w, int64_t gone)
     s[1].count--;
 }
 
-/* Let members expire that are more than `most`, or lie before the window at `w->t`. */
+/* Let members expire that exceed `most`, or are before the window at `w->t`. */
 void expire_members(window *w)
 {
     stretches *s = w->s;
@@ -283,8 +284,8 @@ void expire_members(window *w)
     }
 }
 
-/* Drop all members. Of a window of the last N, where one more may have come, the fold is unknown until
- * N new members have come. */
+/* Drop all members. The fold of a window over the last N is then unknown until N new members have
+ * come. */
 void forget_members(window *w)
 {
     stretches *s = w->s;

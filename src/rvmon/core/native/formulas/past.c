@@ -1,18 +1,18 @@
-/* `left S[low, high] right`, and triggers that may be hidden in what is unknown.
+/* `left S[low, high] right`, and triggers that unknown input may hide.
  *
- * STRETCH, in bounds: where `right` holds at a position s, and `left` at every one since, the operator
- * holds on [s + low, s + high]. These stretches, merged, stand in a ring; a position at which `left` is
- * false empties it. EDGE: with low 0 only the latest s matters, with high unbounded only the earliest,
- * so one instant is the state. A change of an operand costs amortised O(1); between changes the timer
- * wakes the node where a stretch begins or ends.
+ * STRETCH, with both bounds: if `right` holds at a position s, and `left` at every position since, the
+ * operator holds on [s + low, s + high]. These stretches, merged, are kept in a ring; a position at which
+ * `left` is false empties it. EDGE: with low 0 only the latest s matters, with high unbounded only the
+ * earliest, so one instant is the state. A change of an operand costs amortised O(1); between changes
+ * the timer wakes the node when a stretch starts or ends.
  *
  * From the first unknown operand on an operator has two states: [2 slot] takes the unknown for FALSE,
- * [2 slot + 1] for TRUE. The truth is how many of them hold: FALSE 0, UNKNOWN 1, TRUE 2. */
+ * [2 slot + 1] for TRUE. The truth is the number of states that hold: FALSE 0, UNKNOWN 1, TRUE 2. */
 #include "formulas/formulas.h"
 
 #include <string.h>
 
-/* The i-th oldest stretch; `count`: the slot behind the last one. */
+/* The i-th oldest stretch; for `count`, the slot after the last one. */
 static stretch *stretch_at(const stretches *s, int32_t i)
 {
     return &s->at[(s->head + i) & (s->room - 1)];
@@ -59,8 +59,8 @@ static void add_stretch(run *r, stretches *s, int64_t begin, int64_t end)
 
 /* Step one reading to the position at `t`, with its operands there; returns whether it holds.
  *
- * While `right` holds the last stretch has no end (`growing`); it gets one at the step behind. Where
- * `right` held but `left` did not, the stretch is added at the step behind: only from there on does
+ * While `right` holds, the last stretch has no end (`growing`); it gets one at the step after. Where
+ * `right` held but `left` did not, the stretch is added at the step after: only from there on does
  * `left` have to hold. */
 static bool step_stretches(run *r, stretches *s, const node_plan *n, int64_t t, bool left,
                            bool right)
@@ -93,7 +93,7 @@ static bool step_stretches(run *r, stretches *s, const node_plan *n, int64_t t, 
     return holds;
 }
 
-/* The first instant after `t` at which a stretch begins or is over. */
+/* The first instant after `t` at which a stretch starts or is over. */
 static int64_t next_stretch(const stretches *s, int64_t t)
 {
     int64_t found = NEVER;
@@ -104,7 +104,7 @@ static int64_t next_stretch(const stretches *s, int64_t t)
     return found;
 }
 
-/* Copy the state of the first reading to the second: the first unknown operand. */
+/* Copy the state of the first reading to the second, at the first unknown operand. */
 void split_stretches(rv_monitor *m, stretches *worse, stretches *better)
 {
     int32_t i;
@@ -147,9 +147,9 @@ static uint8_t since_stretches(run *r, const node_plan *n, int64_t t, uint8_t le
     return (uint8_t)((holds ? 1U : 0U) + (may_hold ? 1U : 0U)); /* what holds may hold */
 }
 
-/* Step one reading of an EDGE to `t`; `last`: the position before. With low 0 `at` is the last instant
- * at which it holds (INT64_MIN: none), without an end the first one (NEVER: none). `due`: the next
- * instant at which it changes though the operands stay. */
+/* Step one reading of an EDGE to `t`; `last` is the position before. With low 0, `at` is the last instant
+ * at which it holds (INT64_MIN: none); without an upper bound, the first one (NEVER: none). `due` becomes
+ * the next instant at which it changes although its operands stay. */
 static bool step_edge(edge *e, const node_plan *n, int64_t t, int64_t last, bool left, bool right,
                       int64_t *due)
 {
@@ -199,7 +199,7 @@ uint8_t node_since(run *r, const node_plan *n, int64_t t, uint8_t left, uint8_t 
                                 : since_stretches(r, n, t, left, right);
 }
 
-/* Whether two states are equal: what is decided from here on is then the same. */
+/* Whether two states are equal, so that everything decided from here on is the same. */
 bool edges_agree(const edge *a, const edge *b)
 {
     return (a->at == b->at) && (a->left == b->left) && (a->right == b->right)
@@ -225,11 +225,11 @@ bool stretches_agree(const stretches *a, const stretches *b)
 }
 
 /* The truth of a DOUBT node. A stretch is where the trigger is not FALSE. UNKNOWN: an attempt may start
- * here, hidden by what is unknown; TRUE: one may have started earlier in this stretch; FALSE: neither.
+ * here, hidden by unknown input; TRUE: one may have started earlier in this stretch; FALSE: neither.
  *
  * before, now: the trigger at the last position and here; value: the node at the last position; pulse:
- * each position at which the trigger holds starts an attempt, else its edge does; every: the run itself
- * is in doubt, so that no trigger is sure. */
+ * each position at which the trigger holds starts an attempt, otherwise only its edge does; every: the
+ * run itself is in doubt, so that no trigger is sure. */
 static uint8_t hidden_by(uint8_t before, uint8_t now, uint8_t value, bool pulse, bool every)
 {
     const bool is_edge = every ? (before != IS_TRUE)

@@ -1,7 +1,7 @@
 /* Timers: a binary heap of ids, least `due` first, with the place of each id in it.
  *
- * Ids are fixed (nodes, judges, runs), one timer each; NEVER: not in the heap. The next one is read in
- * O(1), a change costs O(log n). Nothing is popped: the handler of a timer sets it again. */
+ * Ids are fixed (nodes, judges, runs), with one timer each; a timer at NEVER is not in the heap. Reading
+ * the next timer costs O(1), a change O(log n). Nothing is popped: a timer's handler sets it again. */
 #include "formulas/formulas.h"
 
 /* Store an id at a place of the heap. */
@@ -11,7 +11,7 @@ static void put(timers *h, int32_t place, int32_t id)
     h->place[id] = place;
 }
 
-/* Restore the order for an entry that may be due before its parent; likewise below for its children. */
+/* Restore the order for an entry that may be due before its parent; sink() does so for children. */
 static void rise(timers *h, int32_t from)
 {
     const int32_t id = h->ids[from];
@@ -97,7 +97,7 @@ int32_t timers_due(const timers *h, int64_t t, int32_t *found)
     int32_t count = 0;
     int32_t looked = 0;
     /* Breadth first through the top of the heap, as children are due no sooner than their parent: O(ids
-     * found). `found` is its own queue: places from `looked` on, ids before. */
+     * found). `found` serves as the queue, too: places from `looked` on, ids before. */
     if ((h->count > 0) && (h->due[h->ids[0]] <= t)) {
         found[count++] = 0;
     }

@@ -1,13 +1,12 @@
-/* The node WINDOW at a position: collects its members there, lets old ones expire, folds the rest.
+/* WINDOW nodes: collecting the members of a position, expiring old ones, folding the rest.
  *
  * A position has one member, or one for each occurrence of the event whose field is the number. Blank
- * positions (it is not known whether they are there) have a member that may be none. The members
- * themselves are in members.c. */
+ * positions, which may not exist, have a member that may not be one. members.c keeps the members. */
 #include "formulas/formulas.h"
 #include "formulas/members.h"
 #include "input/input.h"
 
-/* An infinite number is unknown to a fold. */
+/* A number as a fold reads it: an infinite one is unknown. */
 static rv_number within_range(rv_number number)
 {
     const bool infinite = (number.kind == RV_REAL) && (number.as.real - number.as.real != 0.0);
@@ -49,7 +48,7 @@ static void collect_occurrences(window *w, int32_t event, uint8_t operand)
     int32_t i;
     for (i = w->n->chosen; i < w->n->operands.count; i++) {
         if (r->truth[nodes[i]] == IS_FALSE) {
-            return; /* the comparison holds for none of them, or is unborn */
+            return; /* the comparison holds for no occurrence, or is unborn */
         }
     }
     if ((r->silent[event] == IS_UNKNOWN) || (count == 0)) {
@@ -63,8 +62,8 @@ static void collect_occurrences(window *w, int32_t event, uint8_t operand)
     }
 }
 
-/* The number of the member at this position. Over fields of several events it is unknown where one of
- * them occurs more than once: there is no single combination. */
+/* The number of the member at this position. Over fields of several events it is unknown if one of the
+ * events occurs more than once, as there is no single combination. */
 static rv_number number_now(const run *r, const atom_plan *a)
 {
     const int32_t *events = LIST(PLAN(r), a->events);
@@ -77,7 +76,7 @@ static rv_number number_now(const run *r, const atom_plan *a)
     return within_range(program_value(r, a->left, NULL));
 }
 
-/* Whether the number of all members is a constant, known at blank positions too. */
+/* Whether the number of all members is a constant, which is known at blank positions, too. */
 static bool is_constant(const run *r, const atom_plan *a)
 {
     const int32_t *word = &PLAN(r)->code[a->left];
@@ -114,7 +113,7 @@ static void collect_members(window *w, uint8_t operand, bool blank)
     }
 }
 
-/* Empty a window that begins with an attempt (`since`). */
+/* Empty a window that starts with an attempt (`since`). */
 void restart_window(run *r, const node_plan *n)
 {
     window w = {r, n, &r->past[2 * n->slot], (n->sum < 0) ? NULL : &r->tallies[n->sum], 0, 1, 0, false,
@@ -123,15 +122,15 @@ void restart_window(run *r, const node_plan *n)
     w.s->growing = false;
 }
 
-/* Whether a window begins later than `t`: blank positions before are none of its members. */
+/* Whether a window starts later than `t`, so that blank positions before are not its members. */
 static bool has_not_begun(const run *r, const node_plan *n, int64_t t)
 {
     return (n->since >= 0) && (r->captured[n->since].kind == RV_WHOLE)
            && (t - r->at.begun < r->captured[n->since].as.whole);
 }
 
-/* Publish the fold as the number that CODE_WINDOW reads; comparisons with it are marked if it changed.
- * Returns the node's truth: whether it is known. */
+/* Publish the fold as the number that CODE_WINDOW reads; if it changed, comparisons with it are marked.
+ * Returns the node's truth, which says whether the number is known. */
 static uint8_t publish_number(run *r, const node_plan *n, const rv_number *number, bool blank)
 {
     rv_number *place = &r->amounts[n->low];
@@ -141,13 +140,13 @@ static uint8_t publish_number(run *r, const node_plan *n, const rv_number *numbe
         *place = *number;
         mark_parents(r, n, NODE_COMPARED);
     } else {
-        /* Equal to the last one: nothing above changes. */
+        /* Equal to the last number: no node above changes. */
     }
     return (place->kind == RV_UNKNOWN) ? IS_UNKNOWN : IS_TRUE;
 }
 
-/* Evaluate a node WINDOW at `t`. MIN and MAX of the last N members are windows over member numbers in
- * place of instants: `t` is then the number of the last member, `unit` 1. */
+/* Evaluate a WINDOW node at `t`. MIN and MAX of the last N members are windows over member numbers
+ * instead of instants: `t` is then the number of the last member, `unit` 1. */
 uint8_t node_window(run *r, const node_plan *n, int64_t t, uint8_t operand, bool blank)
 {
     const int32_t fold = n->b & WINDOW_FOLD;
@@ -179,7 +178,7 @@ uint8_t node_window(run *r, const node_plan *n, int64_t t, uint8_t operand, bool
     if (n->most > 0) {
         due = w.s->growing ? t + w.unit : NEVER; /* the next position has a member, too */
     }
-    /* Where only samples are positions the node is evaluated at each of them, without a timer. */
+    /* In sampled time the node is evaluated at each sample, without a timer. */
     timers_set(&r->wake, n->timer, ((GAP(r) > 0) && (due > t)) ? due : NEVER);
     return found;
 }

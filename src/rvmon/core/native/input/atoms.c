@@ -1,9 +1,9 @@
-/* Atoms: the truths that formulas read off the input (SEC_ATOMS in plan.md).
+/* Atoms: the truths that formulas read from the input (SEC_ATOMS in plan.md).
  *
  * An atom is read again when its input changes, so its truth is always current; if it changed, its
- * leaves are marked dirty. A *momentary* atom (an event, `updated`, `changed`) speaks of one position
- * only. While it is not FALSE it is listed: as *fresh* when it is read between positions, as it speaks
- * of the one to come, and from there on as *fading*, to be read again at the position after. */
+ * leaves are marked dirty. A *momentary* atom (an event, `updated`, `changed`) is valid at one position
+ * only. While it is not FALSE it is listed: as *fresh* when it is read between positions, because it is
+ * valid at the one to come; from that position on as *fading*, to be read again at the next one. */
 #include "formulas/formulas.h"
 #include "input/input.h"
 
@@ -14,7 +14,7 @@ static const uint8_t HOLDS_FOR[CMPS] = {
     [CMP_GE] = GREATER | EQUAL, [CMP_GT] = GREATER,
 };
 
-/* Without a branch on the order, which noisy values make unpredictable. */
+/* A comparison without a branch on the order, which would be unpredictable for noisy values. */
 static uint8_t compare_real(int32_t how, const rv_number *value, double constant)
 {
     const int32_t stands = order_of(value->as.real, constant);
@@ -24,11 +24,11 @@ static uint8_t compare_real(int32_t how, const rv_number *value, double constant
     return (uint8_t)(IS_TRUE * ((HOLDS_FOR[how] >> stands) & 1));
 }
 
-/* Up to so many comparisons doing them all is faster than testing a span; beyond, the span pays. */
+/* Up to this many comparisons, doing them all is faster than testing a span; beyond, the span pays. */
 #define QUICK_MOST 4
 
-/* The kind of values of a signal that take_quickly() can take: one that in the second phase nothing
- * reads but a few comparisons with constants, or leaves of its own truth. RV_UNKNOWN: it cannot. */
+/* The kind of values of a signal that take_quickly() can take; RV_UNKNOWN: it cannot take it. In the
+ * second phase only a few comparisons with constants, or leaves of its own truth, may read the signal. */
 static int32_t kind_compared_only(const plan *all, const part *p, int32_t local)
 {
     const signal_plan *s = &p->signals[local];
@@ -49,7 +49,8 @@ static int32_t kind_compared_only(const plan *all, const part *p, int32_t local)
     return (op == ATOM_REAL) ? RV_REAL : RV_WHOLE;
 }
 
-/* Find these signals of a part, and prepare their comparisons; false: memory is short. */
+/* Find the signals of a part for take_quickly(), and prepare their comparisons; false: memory is
+ * short. */
 bool find_quick(arena *a, const plan *all, part *p)
 {
     const int32_t signals = p->plan->signals.count;
@@ -62,7 +63,7 @@ bool find_quick(arena *a, const plan *all, part *p)
         int32_t i;
         int32_t k;
         if ((kind == RV_UNKNOWN) || (p->plan->captured > 0)) {
-            continue; /* by its spans a run with captured values is known not to be concerned */
+            continue; /* runs with captured values need the spans, which show whom a sample concerns */
         }
         made = arena_take(a, (size_t)atoms.count * sizeof *made);
         if (made == NULL) {
@@ -88,7 +89,7 @@ bool find_quick(arena *a, const plan *all, part *p)
     return p->quick != NULL;
 }
 
-/* Compare the two programs of an atom; `at` says per event which occurrence they read. */
+/* Compare the two programs of an atom; `at` is, by event, the occurrence that they read. */
 static uint8_t compare_at(const run *r, const atom_plan *a, const int32_t *at)
 {
     const rv_number left = program_value(r, a->left, at);
@@ -96,8 +97,8 @@ static uint8_t compare_at(const run *r, const atom_plan *a, const int32_t *at)
     return (uint8_t)compare_numbers(a->compare, &left, &right);
 }
 
-/* Choose the first occurrence of each event of a list (`run.chosen`). FALSE: one does not occur; UNKNOWN:
- * one may have occurred in any way, so that there is nothing to choose. */
+/* Choose the first occurrence of each event of a list (`run.chosen`). FALSE: some event does not occur;
+ * UNKNOWN: some event may have occurred in any way, so there is nothing to choose. */
 uint8_t first_choice(const run *r, list of)
 {
     const int32_t *events = LIST(PLAN(r), of);
@@ -112,7 +113,7 @@ uint8_t first_choice(const run *r, list of)
     return found;
 }
 
-/* Choose the next combination of occurrences, one of each event; false: that was the last. */
+/* Choose the next combination of occurrences, one per event; false: there are no more. */
 bool next_choice(const run *r, list of)
 {
     const int32_t *events = LIST(PLAN(r), of);
@@ -127,7 +128,7 @@ bool next_choice(const run *r, list of)
     return false;
 }
 
-/* Whether all of those chosen surely occurred. */
+/* Whether all chosen occurrences are certain. */
 bool is_sure_choice(const run *r, list of)
 {
     const int32_t *events = LIST(PLAN(r), of);
@@ -139,8 +140,8 @@ bool is_sure_choice(const run *r, list of)
     return sure;
 }
 
-/* ATOM_PAYLOAD: TRUE if the comparison holds for some combination of occurrences; Kleene's `or` over all.
- * FALSE where one of the events does not occur. */
+/* ATOM_PAYLOAD: Kleene's `or` of the comparison over all combinations of occurrences; FALSE if one of
+ * the events does not occur. */
 static uint8_t over_occurrences(const run *r, const atom_plan *a)
 {
     const uint8_t occur = first_choice(r, a->events);
@@ -155,7 +156,7 @@ static uint8_t over_occurrences(const run *r, const atom_plan *a)
     return found;
 }
 
-/* The truth of an atom by what has been taken of this position. */
+/* The truth of an atom, given the updates taken for this position so far. */
 uint8_t atom_now(const run *r, const atom_plan *a)
 {
     const int32_t signals = r->part->plan->signals.count;
@@ -184,13 +185,13 @@ uint8_t atom_now(const run *r, const atom_plan *a)
     }
 }
 
-/* Whether an atom has to be read again at the next position though nothing comes. */
+/* Whether an atom has to be read again at the next position even if no update comes. */
 static bool is_momentary(const run *r, int32_t atom)
 {
     return (r->atom[atom] != IS_FALSE) && (r->momentary[atom] != 0U);
 }
 
-/* List a momentary atom that speaks of the position to come. */
+/* List a momentary atom as valid at the position to come. */
 static void list_fresh(run *r, int32_t atom)
 {
     if (is_momentary(r, atom) && (r->is_fresh[atom] == 0U)) {
@@ -206,8 +207,8 @@ bool recheck(run *r, int32_t atom)
     const uint8_t now = (a->op == ATOM_REAL)
         ? compare_real(a->compare, &r->value[a->input], a->constant) : atom_now(r, a);
     const bool changed = now != r->atom[atom];
-    /* An UNKNOWN comparison of fields may be so for another reason now, which decides whether a leaf of
-     * it is unborn. */
+    /* A comparison of fields may be UNKNOWN for another reason than before, which decides whether its
+     * leaf is unborn. */
     if (changed || (a->tells != 0) || ((a->op == ATOM_PAYLOAD) && (now == IS_UNKNOWN))) {
         const list nodes = a->nodes[r->at.phase];
         const int32_t *node = LIST(PLAN(r), nodes);
@@ -244,8 +245,8 @@ static void fade(run *r, int32_t atom)
     }
 }
 
-/* Read atoms again between two positions. If occurrences of the last one are still held (`over`: runs
- * of captured values keep them until the next), momentary atoms belong to it. */
+/* Read atoms again between two positions. If occurrences of the last position are still held (`over`:
+ * runs with captured values keep them until the next), momentary atoms belong to the last position. */
 void recheck_amid(run *r, list l)
 {
     const int32_t *atoms = LIST(PLAN(r), l);
@@ -256,8 +257,8 @@ void recheck_amid(run *r, list l)
     }
 }
 
-/* At the beginning of a position: momentary atoms of the last one are read again; fresh ones speak of
- * this one, and fade behind it. */
+/* At the start of a position: read the momentary atoms of the last position again; fresh atoms are valid
+ * at this position, and fade after it. */
 void recheck_fading(run *r)
 {
     const int32_t count = r->at.fading_count;
@@ -274,13 +275,13 @@ void recheck_fading(run *r)
         r->is_fresh[atom] = 0;
         fade(r, atom);
         if (r->part->pulses[atom] >= 0) {
-            mark_dirty(r, r->part->pulses[atom]); /* taken as a pulse, it was not */
+            mark_dirty(r, r->part->pulses[atom]); /* take_pulse() has not marked its leaf */
         }
     }
     r->at.fresh_count = 0;
 }
 
-/* Read an atom whose nodes are evaluated anyway. `pending`: what has occurred belongs to the next
+/* Read an atom whose nodes are evaluated anyway. `pending`: occurrences so far belong to the next
  * position. */
 void reread(run *r, int32_t atom, bool pending)
 {
@@ -295,8 +296,8 @@ void reread(run *r, int32_t atom, bool pending)
     }
 }
 
-/* Whether a signal of a list (twice its number, plus 1: up to the update after the first value) is not
- * born. */
+/* Whether a signal of a list is not born. An entry is twice the signal's number, plus 1 if its birth
+ * takes an update after the first value. */
 static bool is_unborn(const run *r, list births)
 {
     const int32_t *one = LIST(PLAN(r), births);
@@ -309,8 +310,7 @@ static bool is_unborn(const run *r, list births)
     return false;
 }
 
-/* Whether no occurrence of an atom's events is unknown: what was lost is not excused by what is not
- * born yet. */
+/* Whether no occurrence of an atom's events is unknown: an unborn signal does not excuse lost events. */
 static bool all_occurrences_known(const run *r, const atom_plan *a)
 {
     const int32_t *events = LIST(PLAN(r), a->events);
@@ -330,14 +330,14 @@ static bool all_occurrences_known(const run *r, const atom_plan *a)
     return true;
 }
 
-/* Whether a leaf is taken for `b`, as its atom is UNKNOWN only because a signal is not born yet. */
+/* Whether a leaf has the truth `b` because its atom is UNKNOWN only due to a signal not born yet. */
 bool is_taken_for(const run *r, const node_plan *n)
 {
     return (n->op == NODE_LEAF) && (r->atom[n->a] == IS_UNKNOWN) && (n->b != IS_UNKNOWN)
            && is_unborn(r, n->operands) && all_occurrences_known(r, &r->part->atoms[n->a]);
 }
 
-/* The truth of a leaf: its atom, or what it is taken for. */
+/* The truth of a leaf: that of its atom or, while a signal is unborn, `b`. */
 uint8_t leaf_truth(const run *r, const node_plan *n)
 {
     if (n->op == NODE_UNBORN) {

@@ -1,6 +1,6 @@
-/* Functions of expressions (CODE_...) apart from arithmetic: rounding, bits, the C library's functions.
+/* The functions of expressions (CODE_...) beyond arithmetic: rounding, bits, the C library's functions.
  *
- * Whole arguments give exact whole results; a result that is not finite, or leaves 64 bits, is unknown.
+ * Whole arguments give exact whole results; a result that is not finite, or exceeds 64 bits, is unknown.
  * Source: docs/reference/semantics.md, section 5. */
 #include "input/input.h"
 
@@ -41,7 +41,7 @@ static int64_t whole_modulo(int64_t a, int64_t b)
     return ((rest != 0) && ((rest < 0) != (b < 0))) ? rest + b : rest;
 }
 
-/* An arithmetic shift (rounding down), which C leaves to the compiler for negative numbers. */
+/* An arithmetic shift (rounding down); for negative numbers C leaves `>>` to the compiler. */
 static int64_t shifted_right(int64_t a, int64_t by)
 {
     return (a < 0) ? -1 - ((-1 - a) >> by) : a >> by;

@@ -1,10 +1,10 @@
 /* Numbers, binary64 and int64, and the interpreter of expressions.
  *
- * Whole numbers stay whole, and exact, through +, -, *, min, max and the like; a result that leaves 64
- * bits or is not finite is unknown, and so is all that reads an unknown number. A whole and a real
+ * Whole numbers stay whole and exact through +, -, *, min, max and the like. A result that exceeds 64
+ * bits or is not finite is unknown, and so is every result from an unknown number. A whole and a real
  * number are compared exactly. Each operation is rounded once, in the same way on every machine: no
- * contraction, no excess precision (-ffp-contract=off, no x87), and beside functions.c only operations
- * whose results IEEE 754 fixes.
+ * contraction, no excess precision (-ffp-contract=off, no x87), and apart from functions.c only
+ * operations whose results IEEE 754 fixes.
  *
  * Source: docs/reference/semantics.md, section 5. */
 #include "input/input.h"
@@ -23,7 +23,7 @@ static rv_number whole(int64_t value)
     return made;
 }
 
-/* A result, unknown if not finite (inf - inf is NaN). */
+/* A real result; unknown if it is not finite (inf - inf is NaN). */
 static rv_number real(double value)
 {
     rv_number made = UNKNOWN_NUMBER;
@@ -61,7 +61,7 @@ static int sign_against(int64_t a, double b)
     if (b < -0x1p63) {
         return 1;
     }
-    floor_of_b = (int64_t)b; /* truncated, so that the rest has the sign of b */
+    floor_of_b = (int64_t)b; /* truncated: the rest has the sign of b */
     rest = b - (double)floor_of_b;
     if (a != floor_of_b) {
         return (a < floor_of_b) ? -1 : 1;
@@ -103,7 +103,7 @@ int32_t compare_numbers(int32_t how, const rv_number *a, const rv_number *b)
     return holds ? IS_TRUE : IS_FALSE;
 }
 
-/* Whether two numbers have the same kind and value; two unknown ones do. */
+/* Whether two numbers have the same kind and value; two unknown numbers are the same. */
 bool same_number(const rv_number *a, const rv_number *b)
 {
     if (a->kind != b->kind) {
@@ -137,7 +137,7 @@ static rv_number subtracted(const rv_number *a, const rv_number *b)
     return real(as_double(a) - as_double(b));
 }
 
-/* |x|, of INT64_MIN too. */
+/* |x|, also for INT64_MIN. */
 static uint64_t size_of(int64_t x)
 {
     return (x < 0) ? UINT64_C(0) - (uint64_t)x : (uint64_t)x;
@@ -185,8 +185,8 @@ static rv_number picked(const rv_number *a)
     return (a->kind == RV_REAL) ? real(a->as.real) : *a;
 }
 
-/* The rounding error of x * x, exactly, for |x| < 2^500: Dekker's product (1971) by halves of 26 bits.
- * Not fma(): some C libraries of microcontrollers round it twice. */
+/* The exact rounding error of x * x, for |x| < 2^500: Dekker's product (1971) by halves of 26 bits. Not
+ * by fma(), which some C libraries of microcontrollers round twice. */
 static double lost_of_square(double x, double square)
 {
     const double split = x * 134217729.0; /* 2^27 + 1 */
@@ -195,8 +195,8 @@ static double lost_of_square(double x, double square)
     return ((high * high - square) + 2.0 * high * low) + low * low;
 }
 
-/* sqrt(a^2 + b^2), the same on every machine, unlike hypot(): the root, corrected by the error of its
- * square, which is known to twice the digits. Scaled by a power of two where squares would leave the
+/* sqrt(a^2 + b^2), the same on every machine, unlike hypot(): the root is corrected by the error of its
+ * square, which is known to twice the precision. Scaled by a power of two if squares would leave the
  * range. */
 static double length(double a, double b)
 {
@@ -252,8 +252,8 @@ static bool is_of_reals(int32_t op)
            || is_within(op, CODE_SIN, CODE_DISTANCE_ON_EARTH + 1);
 }
 
-/* The result of an operation on `count` numbers. Where one is real the others are rounded to reals
- * first; min, max and clamp, which only compare, use the exact order. */
+/* The result of an operation on `count` numbers. If one is real, the others are rounded to reals first;
+ * min, max and clamp, which only compare, use the exact order. */
 static rv_number calculated(int32_t op, const rv_number *args, int32_t count)
 {
     rv_number x[MOST_ARGUMENTS] = {UNKNOWN_NUMBER, UNKNOWN_NUMBER, UNKNOWN_NUMBER, UNKNOWN_NUMBER};
@@ -305,7 +305,7 @@ static rv_number of_updates(int32_t op, const history *h, const rv_number *now)
     return found;
 }
 
-/* A field of an occurrence; `at`: by event, which one, NULL: the last. */
+/* A field of an occurrence; `at` is, by event, the occurrence; NULL: the last one. */
 static rv_number field_value(const run *r, int32_t event, int32_t field, const int32_t *at)
 {
     const occurrences *o = &r->payloads[event];
@@ -316,14 +316,14 @@ static rv_number field_value(const run *r, int32_t event, int32_t field, const i
     return o->fields[one * r->part->events[event].fields + field];
 }
 
-/* Ticks since the first position; unknown if that may have been another one, or this may be none. */
+/* Ticks since the first position; unknown if it is not certain which is the first, or if this is one. */
 static rv_number time_now(const run *r)
 {
     const bool known = (r->at.begun == r->at.origin) && !r->at.dense && (r->at.presence == ARE_THERE);
     return known ? whole(r->at.position - r->at.begun) : UNKNOWN_NUMBER;
 }
 
-/* Seconds in ticks, rounded to nearest, halves to even; clamped to +-LIMIT. */
+/* Seconds in ticks, rounded to nearest, ties to even; clamped to +-LIMIT. */
 int64_t seconds_in_ticks(const rv_number *seconds)
 {
     const double ticks = as_double(seconds) * 1e9;
@@ -335,8 +335,8 @@ int64_t seconds_in_ticks(const rv_number *seconds)
     return (ticks >= 0x1p62) ? LIMIT : ((ticks <= -0x1p62) ? -LIMIT : (int64_t)rint(ticks));
 }
 
-/* Run the program (postfix, SEC_CODE) at `place`. `at`: by event, the occurrence that FIELD reads. The
- * plan's check has bounded the depth of the stack and every argument. O(operations). */
+/* Run the program (postfix, SEC_CODE) at `place`. `at` is, by event, the occurrence that FIELD reads. The
+ * plan check has bounded the depth of the stack and every argument. O(operations). */
 rv_number program_value(const run *r, int32_t place, const int32_t *at)
 {
     rv_number stack[PROGRAM_DEPTH];

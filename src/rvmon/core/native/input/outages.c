@@ -1,12 +1,12 @@
-/* Outages: stretches of time over which a source may have said anything (a connection that was down, a
- * line that could not be read). rv_lose() and rv_found() say where one begins and ends, by names.
+/* Outages: stretches of time over which a source may have sent anything (a connection that was down, a
+ * line that could not be read). rv_lose() and rv_found() report their starts and ends, by name.
  *
- * A lost name is in a state, not at a value: it is unknown at *every* position of the outage, like a
- * name without a source, so nothing has to be evaluated there. Per name:
+ * Being lost is a state of a name, not a value: the name is unknown at *every* position of the outage,
+ * like a name without a source, so nothing has to be evaluated there. States of a name:
  *   NOT_LOST -> LOST_ON (since `until`) -> LOST_UNTIL (up to `until`, which time may not have passed)
  *   -> NOT_LOST (event), or LOST_SINCE (signal, unknown until its next update) -> NOT_LOST
  * Updates within the outage are ignored, as a lost one may have followed, except at its last instant:
- * that one came last, is kept, and counts behind it. Costs O(atoms that read the name) at either end.
+ * that update came last, is kept, and counts after it. Costs O(atoms that read the name) at either end.
  *
  * Source: docs/reference/semantics.md, section 1 (Outage). */
 #include "formulas/formulas.h"
@@ -21,7 +21,7 @@ int32_t names_to_lose(const run *r)
     return r->part->plan->signals.count + r->part->plan->events.count;
 }
 
-/* No name is lost: the beginning of a run. */
+/* Start a run with no name lost. */
 void clear_losses(run *r)
 {
     const int32_t names = names_to_lose(r);
@@ -32,14 +32,14 @@ void clear_losses(run *r)
     }
 }
 
-/* Whether the last instant of a name's outage is a position: it is unknown there, whatever came. */
+/* Whether the last instant of a name's outage is a position; if so, the name is unknown there. */
 static bool ends_at_position(const run *r, int32_t name)
 {
     return tick_from(step_of(r), r->until[name]) == r->until[name];
 }
 
 /* Whether the outage of a name covers `t`. At its last instant an update may count (`keeps`), unless
- * there is a position. */
+ * that instant is a position. */
 bool is_lost_at(const run *r, int32_t name, int64_t t)
 {
     if ((r->at.lost_count == 0) || (r->lost[name] != LOST_UNTIL)) {
@@ -49,13 +49,13 @@ bool is_lost_at(const run *r, int32_t name, int64_t t)
            || ((t == r->until[name]) && ((r->keeps[name] == 0U) || ends_at_position(r, name)));
 }
 
-/* Whether a name is absent for good, and not because it is lost. */
+/* Whether a name is absent because it has no source, not because it is lost. */
 bool has_no_source(const run *r, int32_t name)
 {
     return (r->absent[name] != 0U) && ((r->at.lost_count == 0) || (r->lost[name] == NOT_LOST));
 }
 
-/* Count a name in or out among the sources that make its atoms momentary. */
+/* Add a name to, or remove it from, the sources that make its atoms momentary. */
 static void set_momentary(run *r, int32_t name, bool momentary)
 {
     const int32_t signals = r->part->plan->signals.count;
@@ -86,8 +86,8 @@ static uint8_t at_least_unknown(uint8_t truth)
     return (truth > IS_UNKNOWN) ? truth : IS_UNKNOWN;
 }
 
-/* A signal is lost at `t`: as an update to an unknown value. It counts as born, as its first values may
- * be what was lost. */
+/* A signal is lost at `t`, which acts like an update to an unknown value. The signal counts as born,
+ * since its first values may have been lost. */
 static void lose_signal(run *r, int32_t local, int64_t t)
 {
     const signal_plan *s = &r->part->signals[local];
@@ -113,7 +113,7 @@ static void lose_name(run *r, int32_t name, int64_t t)
     r->lost[name] = LOST_ON;
     r->until[name] = t; /* the first instant, until the last one is known */
     r->has_kept[name] = 0;
-    if (was == LOST_UNTIL) { /* an outage that had not ended for the positions goes on */
+    if (was == LOST_UNTIL) { /* no position has seen the end of the previous outage: it continues */
         return;
     }
     r->at.lost_count += (was == NOT_LOST) ? 1 : 0;
@@ -135,8 +135,8 @@ static void end_loss(run *r, int32_t name)
     r->at.lost_count--;
 }
 
-/* The outage of a name is over: an event is known again, a signal waits for its next update. It can go
- * stale from `until` on, as an update may have come there. */
+/* The outage of a name is over: an event is known again, a signal waits for its next update. Its stale
+ * time counts from `until`, as an update may have come then. */
 static void end_outage(run *r, int32_t name, int64_t until)
 {
     const int32_t signals = r->part->plan->signals.count;
@@ -154,8 +154,7 @@ static void end_outage(run *r, int32_t name, int64_t until)
     }
 }
 
-/* An outage that ended before the last position: the one that follows hears nothing of it. An update
- * that was kept becomes the value. */
+/* End an outage that does not affect the position to come; a kept update becomes the value. */
 static void end_outage_before(run *r, int32_t name)
 {
     const int32_t signals = r->part->plan->signals.count;
@@ -179,8 +178,8 @@ static void end_outage_before(run *r, int32_t name)
     recheck_name(r, name);
 }
 
-/* An outage that ended between the last tick of a clock and the one to come: what was lost since counts
- * at that tick, where its names may be updated, changed, or occur. */
+/* End an outage between the last tick of a clock and the one to come. Updates lost since then count at
+ * the coming tick, where its names may be updated, changed, or occur. */
 static void end_outage_at_tick(run *r, int32_t name)
 {
     const int32_t signals = r->part->plan->signals.count;
@@ -199,7 +198,7 @@ static void end_outage_at_tick(run *r, int32_t name)
     recheck_name(r, name);
 }
 
-/* End the outage of a name, at a position or update at `t` behind it. */
+/* End the outage of a name, at a later position or update at `t`. */
 static void end_outage_of(run *r, int32_t name, int64_t t)
 {
     if (tick_from(step_of(r), r->until[name]) < tick_from(step_of(r), t)) {
@@ -227,7 +226,7 @@ static void find_name(run *r, int32_t name, int64_t at)
     }
 }
 
-/* On the way to the position at `t`: end the outages that ended before it. */
+/* Before the position at `t`: end the outages that are over by then. */
 void end_outages(run *r, int64_t t)
 {
     const int32_t names = names_to_lose(r);
@@ -244,8 +243,8 @@ void end_outages(run *r, int64_t t)
     }
 }
 
-/* Take an update at `t` while some name is lost; returns whether it is dropped, or kept for later. It
- * ends the outage of a signal that waited for it. */
+/* Take an update at `t` while some name is lost; returns whether the update is dropped or kept for
+ * later. It ends the outage of a signal that waits for an update. */
 bool take_while_lost(run *r, int64_t t, const incoming *in)
 {
     const int32_t name = in->event ? r->part->plan->signals.count + in->local : in->local;
@@ -269,12 +268,12 @@ bool take_while_lost(run *r, int64_t t, const incoming *in)
     }
     if (r->lost[name] == LOST_SINCE) {
         end_loss(r, name);
-        recheck_name(r, name); /* `known` is known again, even if the new value is not */
+        recheck_name(r, name); /* the truth of `known` is certain again, even if the value is not */
     }
     return false;
 }
 
-/* A signal that waits for an update behind an outage went stale: now it is unknown for certain. */
+/* A signal that waits for an update after an outage went stale: now it is certainly unknown. */
 void end_loss_when_stale(run *r, int32_t local)
 {
     if (r->lost[local] == LOST_SINCE) {
@@ -283,8 +282,8 @@ void end_loss_when_stale(run *r, int32_t local)
     }
 }
 
-/* Apply SAYS_LOST and SAYS_FOUND to a run at `t`: positions before `t` are judged first, one at `t` is
- * judged afterwards. */
+/* Apply SAYS_LOST and SAYS_FOUND to a run at `t`: positions before `t` are judged first, a position at
+ * `t` is judged afterwards. */
 void run_take_loss(run *r, int64_t t, const incoming *in, int32_t count)
 {
     const int32_t signals = r->part->plan->signals.count;
@@ -294,7 +293,7 @@ void run_take_loss(run *r, int64_t t, const incoming *in, int32_t count)
         approach(r, t);
     }
     if ((gap > 0) && (r->part->plan->captured > 0) && (r->at.position < tick_from(gap, t) - gap)) {
-        forget_last(r); /* occurrences of the last position are over, though no position came since */
+        forget_last(r); /* occurrences of the last position are over, although no position has come */
     }
     for (i = 0; i < count; i++) {
         const int32_t name = in[i].event ? signals + in[i].local : in[i].local;
@@ -310,7 +309,7 @@ void run_take_loss(run *r, int64_t t, const incoming *in, int32_t count)
     }
 }
 
-/* Count the names that are lost now; the one behind the last stands for "something, of no name". */
+/* Count the names that are lost now; the entry after the last name stands for an outage of no name. */
 static void set_losing(rv_monitor *m, int32_t name, bool lost)
 {
     if ((m->losing[name] != 0U) != lost) {
@@ -319,8 +318,8 @@ static void set_losing(rv_monitor *m, int32_t name, bool lost)
     }
 }
 
-/* Where only samples are positions a lost sample may have been at any tick: while anything is lost each
- * tick may be a position (dense.c), even if no name of the plan is. False: memory is short. */
+/* In sampled time a lost sample may have been at any tick: while anything is lost each tick may be a
+ * position (dense.c), even if no name of the plan is lost. False: memory is short. */
 static bool update_losing(rv_monitor *m, int64_t t, const int32_t *names, int32_t count, int32_t says)
 {
     const bool lost = says == SAYS_LOST;
@@ -340,7 +339,7 @@ static bool update_losing(rv_monitor *m, int64_t t, const int32_t *names, int32_
     return true;
 }
 
-/* rv_lose() and rv_found(). An outage before the first sample means that the trace may begin there
+/* rv_lose() and rv_found(). An outage before the first sample means that the trace may start there
  * (home_begin_blank). */
 static int apply_loss(rv_monitor *m, int64_t t, const int32_t *names, int32_t count, int32_t says)
 {

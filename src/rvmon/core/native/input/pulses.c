@@ -1,9 +1,9 @@
-/* Pulses: momentary atoms that do no more than start attempts.
+/* Pulses: momentary atoms that only start attempts.
  *
- * If only triggers of pulses read the atom of an event, nothing but its leaf changes where it occurs, and
- * at the next position, where it ends. So neither position is visited for it: attempts start as the sample
+ * If only pulse triggers read the atom of an event, nothing but its leaf changes where it occurs, and at
+ * the next position, where it ends. So neither position is visited for it: attempts start when the sample
  * arrives, and the truths end once time passes the next position. The one exception is a stretch in doubt
- * that begins or ends there, of which a DOUBT above the leaf has to hear.
+ * that starts or ends there, as a DOUBT above the leaf has to see it.
  *
  * Source: SEMANTICS 3 (a pulse starts an attempt at every position where it holds). */
 #include "attempts/attempts.h"
@@ -13,7 +13,7 @@
 #include "runs/runs.h"
 #include "windows/windows.h"
 
-/* Whether a node is read by triggers of pulses alone, in the second phase, and one DOUBT at most. */
+/* Whether in the second phase only pulse triggers, and at most one DOUBT, read a node. */
 static bool is_read_by_pulses(const plan *all, const part *p, const node_plan *n)
 {
     const link_plan *l = &all->links[n->links.first];
@@ -29,8 +29,8 @@ static bool is_read_by_pulses(const plan *all, const part *p, const node_plan *n
            || ((n->parents[1].count == 1) && is_doubt_of_pulse(&p->nodes[parents[0]]));
 }
 
-/* Find the pulses of a part; false: memory is short. Runs that capture values keep what occurred, and
- * margins and recorded truths are told of each position, so there all ends are visited. */
+/* Find the pulses of a part; false: memory is short. Runs that capture values keep occurrences, and
+ * margins and recorded truths see each position, so parts with these visit all ends of events. */
 bool find_pulses(arena *a, const plan *all, part *p)
 {
     const bool are_unheard = (all->header->gap > 0) && (p->plan->captured == 0)
@@ -66,21 +66,21 @@ bool find_pulses(arena *a, const plan *all, part *p)
     return true;
 }
 
-/* Whether the DOUBT above the leaf of a pulse has to hear of it. */
+/* Whether the DOUBT above the leaf of a pulse has to see its changes. */
 static inline bool is_doubted(const run *r, int32_t atom)
 {
     const int32_t doubt = r->part->pulse_doubts[atom];
     return (doubt >= 0) && (r->truth[doubt] != IS_FALSE);
 }
 
-/* Whether an atom of the last position is FALSE at the next, and nothing there hears of it. */
+/* Whether an atom of the last position is FALSE at the next, and nothing depends on that. */
 static bool ends_unheard(const run *r, int32_t atom)
 {
     return (r->part->pulses[atom] >= 0) && !is_doubted(r, atom)
            && (atom_now(r, &r->part->atoms[atom]) == IS_FALSE);
 }
 
-/* Set the leaf of a pulse at `t`, of which no DOUBT hears. */
+/* Set the leaf of a pulse at `t`, if no DOUBT has to see it. */
 static inline void set_unheard(run *r, int32_t atom, uint8_t now, int64_t t)
 {
     const int32_t leaf = r->part->pulses[atom];
@@ -95,8 +95,8 @@ static inline void set_unheard(run *r, int32_t atom, uint8_t now, int64_t t)
     }
 }
 
-/* Take an event that is no more than a pulse; false: it has to be taken in full. Its leaf is evaluated as
- * its position is visited, or set as its attempts start. */
+/* Take an event that is just a pulse; false: it has to be taken in full. Its leaf is evaluated when its
+ * position is visited, or set when its attempts start. */
 bool take_pulse(run *r, int32_t local, int32_t says)
 {
     const int32_t atom = r->part->pulsing[local];
@@ -104,7 +104,7 @@ bool take_pulse(run *r, int32_t local, int32_t says)
         return false;
     }
     if ((r->is_fresh[atom] != 0U) && (r->atom[atom] == IS_TRUE)) {
-        return true; /* it occurs, whatever else is said of it */
+        return true; /* it has occurred already, so further updates change nothing */
     }
     if ((says != RV_SAYS_YES) || (r->at.presence != ARE_THERE) || (r->at.lost_count > 0)
         || (r->atom[atom] != IS_FALSE) || is_doubted(r, atom)) {
@@ -128,7 +128,7 @@ void start_pulses(run *r, int64_t t)
     r->at.position = t;
     r->at.alarm = t + 1; /* they end there */
     r->at.fresh_count = 0;
-    r->at.fading_count = count; /* those of before have ended */
+    r->at.fading_count = count; /* the earlier ones have ended */
     for (i = 0; i < count; i++) {
         r->fading[i] = r->fresh[i];
         r->is_fresh[r->fading[i]] = 0;
@@ -146,7 +146,7 @@ void start_pulses(run *r, int64_t t)
     }
 }
 
-/* Whether a position has to be visited for what is due by then: some of it is not decided by time alone. */
+/* Whether a position has to be visited for what is due by then, as not all is decided by time alone. */
 static bool is_due(run *r, int64_t t)
 {
     const int32_t count = (timers_next(&r->rules) <= t) ? timers_due(&r->rules, t, r->due_rules) : 0;
@@ -159,8 +159,8 @@ static bool is_due(run *r, int64_t t)
     return false;
 }
 
-/* Time passes the position behind the last one visited: end what held there, unless something hears of
- * it or an attempt is due there, so that it has to be visited. */
+/* Time passes the position after the last one visited: end the pulses of that one, unless something
+ * depends on their end or an attempt is due there, so that the position has to be visited. */
 void end_pulses(run *r)
 {
     const int64_t t = r->at.position + GAP(r);

@@ -1,11 +1,11 @@
-/* Spans of signals: the open interval around a value, between the nearest numbers that the signal is
- * compared with, in which no comparison changes. A value within is only held; a run of its own that
- * holds it need not be called. */
+/* Spans of signals: the open interval around a value, between the nearest numbers with which the signal
+ * is compared, in which no comparison changes. A value within the span is only held, and runs with
+ * captured values that hold it need not be called. */
 #include "input/input.h"
 
 #include <math.h>
 
-/* Whether a program is of constants and captured values alone, which stay as long as a run. */
+/* Whether a program reads only constants and captured values, which stay the same for a whole run. */
 static bool is_lasting(const plan *p, int32_t place)
 {
     const int32_t *word = &p->code[place];
@@ -24,8 +24,8 @@ static bool is_signal(const plan *p, int32_t place, int32_t local)
     return ((word[0] & 255) == CODE_SIGNAL) && (word[0] >> 8 == local) && ((word[1] & 255) == CODE_END);
 }
 
-/* The number that an atom compares a signal with as long as the run lasts; false: it does something
- * else. */
+/* The number with which an atom compares a signal as long as the run lasts; false: the atom does
+ * something else. */
 bool compares_with(const run *r, const atom_plan *a, int32_t local, rv_number *constant)
 {
     const plan *p = PLAN(r);
@@ -49,7 +49,7 @@ static bool is_exact(const rv_number *whole)
     return (whole->as.whole > -(INT64_C(1) << 52)) && (whole->as.whole < (INT64_C(1) << 52));
 }
 
-/* Narrow a span around `x` to one side of a constant; false: it is none of doubles, or `x` itself. */
+/* Narrow a span around `x` to one side of a constant; false: it is not an exact double, or is `x`. */
 static bool bound_span(span *s, double x, const rv_number *constant)
 {
     const bool whole = constant->kind == RV_WHOLE;
@@ -67,9 +67,9 @@ static bool bound_span(span *s, double x, const rv_number *constant)
     return true;
 }
 
-/* Narrow a span to the values of a signal by which no comparison comes out otherwise than by `value`: the
- * open interval between the nearest numbers that it is compared with. False: it is compared with that
- * value itself, or with what is no number that lasts, or doubles are too coarse. */
+/* Narrow a span to values of a signal for which every comparison gives the same result as for `value`:
+ * the open interval between the nearest numbers with which it is compared. False: it is compared with
+ * `value` itself, or with a number that may change, or doubles are too coarse. */
 bool narrow_span(const run *r, int32_t local, const rv_number *value, span *s)
 {
     const double x = (value->kind == RV_REAL) ? value->as.real : (double)value->as.whole;
@@ -85,7 +85,7 @@ bool narrow_span(const run *r, int32_t local, const rv_number *value, span *s)
     return bounded;
 }
 
-/* Set the span of a signal. Empty if anything else hangs on the value (another kind of atom, staleness,
+/* Set the span of a signal: empty if anything else depends on the value (another kind of atom, staleness,
  * history, births still to come). The run of an attempt captures nothing itself. */
 void learn_span(run *r, int32_t local)
 {
@@ -95,7 +95,7 @@ void learn_span(run *r, int32_t local)
     const bool may_be_quick = (r->margins == NULL) && (r->part->quick[local].kind != RV_UNKNOWN);
     span found = {-HUGE_VAL, HUGE_VAL};
     r->spans[local] = NO_SPAN;
-    /* A signal of take_quickly() has no span: that way replaces the value and would not update it. */
+    /* A signal of take_quickly() has no span: it replaces the value and would not update a span. */
     if (may_be_quick || (flags != 0U) || (s->perishable >= 0) || (r->births[local] < s->births)) {
         return;
     }
@@ -105,6 +105,6 @@ void learn_span(run *r, int32_t local)
         r->spans[local].low = (double)value->as.whole - 1.0;
         r->spans[local].high = (double)value->as.whole + 1.0;
     } else {
-        /* Nothing is known of other values. */
+        /* Other values may change a comparison. */
     }
 }

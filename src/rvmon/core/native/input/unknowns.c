@@ -1,5 +1,5 @@
-/* Two subjects around what is not known: when and why signals were unknown, which notes of undecided
- * attempts tell; and positions of which it is not known whether they are there.
+/* Two subjects about unknown input: when and why signals were unknown, which notes of undecided attempts
+ * report; and positions that may not exist.
  *
  * The first is a list of stretches, one for each time that a signal was unknown, kept by the root run
  * of a part for all its runs. When it is full, stretches that ended before the first doubt of an open
@@ -13,9 +13,9 @@
 
 #include <string.h>
 
-#define SPARE_UNKNOWNS 64 /* room at first, beside one stretch for each signal */
+#define SPARE_UNKNOWNS 64 /* room at first, in addition to one stretch per signal */
 
-/* The beginning of a run: every signal is unknown, as never known yet. False: memory is short. */
+/* Start a run: every signal is unknown, as it was never known yet. False: memory is short. */
 bool begin_unknowns(home *h)
 {
     rv_monitor *m = h->monitor;
@@ -59,7 +59,7 @@ static int64_t first_doubt(home *h)
     return found;
 }
 
-/* Drop the stretches that ended before that. */
+/* Drop the stretches that ended before the first doubt of any judge. */
 static void drop_unknowns(home *h)
 {
     const int64_t first = first_doubt(h);
@@ -115,8 +115,8 @@ void note_knowledge(run *r, int64_t t, int32_t local, const rv_number *value)
     h->unknown_count++;
 }
 
-/* Whether the notes of a judge tell of a stretch: a leaf reads the signal, which is still unknown, or was
- * at the doubt. */
+/* Whether the notes of a judge report a stretch: a leaf reads the signal, which is still unknown or was
+ * unknown at the doubt. */
 static bool is_told(const run *r, int32_t index, const unknown_stretch *one, int64_t doubt)
 {
     const list names = r->part->judges[index].names;
@@ -133,7 +133,7 @@ static bool is_told(const run *r, int32_t index, const unknown_stretch *one, int
     return (left == 1) && (*name == one->local);
 }
 
-/* How many words `put_unknowns` takes. */
+/* The number of words that put_unknowns() writes. */
 int64_t unknowns_count(const run *r, int32_t index, int64_t doubt)
 {
     const home *h = r->home;
@@ -149,9 +149,9 @@ int64_t unknowns_count(const run *r, int32_t index, int64_t doubt)
     return found;
 }
 
-/* Write the stretches of the names that a judge's leaves read that last still or cover `doubt`
- * (RV_NO_TIME: none), and those names that have no source: their number; then for each the name with the
- * cause from bit 32 on, since when, until when (NEVER: it lasts). */
+/* Write why names that a judge's leaves read were unknown: the stretches that last still or cover `doubt`
+ * (RV_NO_TIME: none), and the names without a source. First their number; then for each the name, with
+ * the cause from bit 32 on, since when, and until when (NEVER: it lasts). */
 void put_unknowns(const run *r, int32_t index, int64_t doubt, int64_t *to)
 {
     const home *h = r->home;
@@ -184,23 +184,23 @@ void put_unknowns(const run *r, int32_t index, int64_t doubt, int64_t *to)
 
 /* ---- blank positions
  *
- * If something was lost before the first sample the trace may have begun there: the positions from the
- * outage to the first sample may be there or not. Every formula is unknown at them, constants too.
+ * If something was lost before the first sample, the trace may have started there: the positions from
+ * the outage to the first sample may exist or not. Every formula is unknown at them, constants too.
  *
- * Past operators take one step with unknown operands for the whole stretch. Attempts that begin there
- * are in doubt, and their obligations there stay unknown: they are never decided, except for an
+ * Past operators take one step with unknown operands for the whole stretch. Attempts that start there
+ * are in doubt, and their obligations there stay unknown. So they are never decided, except for an
  * episode, which can still fail at a later position (resume_episode).
  *
  * Source: docs/reference/semantics.md, section 1 (Outage). */
 
-/* Something was lost from `t` on, before the first sample: the trace may begin there. */
+/* Something was lost from `t` on, before the first sample: the trace may start there. */
 void await_blank_start(run *r, int64_t t)
 {
     r->at.presence = MAY_BE_THERE;
     r->at.awaited = tick_from(GAP(r), t);
 }
 
-/* The first blank position, which stands for all of them: attempts that may begin there are started. */
+/* The first blank position, which represents all of them: attempts that may start there are started. */
 void begin_blank(run *r, int64_t t)
 {
     int32_t i;
@@ -211,7 +211,7 @@ void begin_blank(run *r, int64_t t)
     r->at.awaited = NEVER;
     r->opening = false;
     if (r == r->home->root) {
-        r->opens_at = -LIMIT; /* an occurrence may be lost: attempts of unknown key */
+        r->opens_at = -LIMIT; /* an occurrence may have been lost: attempts with unknown key */
     }
     margins_miss(r, t);
     remember_unknown(r, t);
@@ -234,7 +234,7 @@ void begin_blank(run *r, int64_t t)
     }
 }
 
-/* The first position that is surely there, and may be the first of all: `start` is UNKNOWN. */
+/* The first position that certainly exists, and may be the first of all: `start` is UNKNOWN. */
 void end_blank(run *r, int64_t t)
 {
     r->at.starting = IS_FALSE;
@@ -268,7 +268,7 @@ static void resume_episode(run *r, int32_t index, int64_t t)
     enter(r, index, at, t);
 }
 
-/* The same for all episodes of a run. Where only samples are positions, outages are up to dense.c. */
+/* The same for all episodes of a run. In sampled time dense.c handles outages. */
 void resume_episodes(run *r, int64_t t)
 {
     int32_t i;

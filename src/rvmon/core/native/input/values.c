@@ -1,8 +1,8 @@
 /* Takes the updates of a sample: held values, births, staleness, occurrences of events.
  *
- * A signal holds its value until the next update; what an update says beside it (`updated`, `changed`,
- * occurrences and their payloads) is true at one position only: such names are marked, and forgotten
- * once the position is over. The common update, one that moves no comparison, is recognised by the
+ * A signal holds its value until the next update. Everything else about an update (`updated`, `changed`,
+ * occurrences and their payloads) is valid at one position only: such names are marked, and forgotten
+ * once the position is over. The common update, one that changes no comparison, is recognised by the
  * signal's span and costs two comparisons of doubles (`take_update` in input.h).
  *
  * Source: docs/reference/semantics.md, section 1. */
@@ -13,7 +13,7 @@
 #include <math.h>
 #include <string.h>
 
-/* List a name as one of which something is to be forgotten once this position is over. */
+/* List a name whose update has to be forgotten once this position is over. */
 void mark(run *r, int32_t name)
 {
     if (r->marked[name] == 0U) {
@@ -61,7 +61,7 @@ uint8_t remember(history *h, int64_t t, const rv_number *value)
     return truth_if(!same_number(value, &h->before));
 }
 
-/* Hold a value from `t` on; if it is another one, the atoms that read it are read again. */
+/* Hold a value from `t` on; if it differs from the last one, atoms that read it are read again. */
 static void hold(run *r, int64_t t, int32_t local, const rv_number *value)
 {
     if (!same_number(value, &r->value[local])) {
@@ -72,8 +72,8 @@ static void hold(run *r, int64_t t, int32_t local, const rv_number *value)
         }
         r->value[local] = *value;
         if (recheck_list(r, atoms)) {
-            r->spans[local] = NO_SPAN; /* a signal that just changed a truth often does so again: do not
-                                        * spend time on a span */
+            r->spans[local] = NO_SPAN; /* a signal that just changed a truth often does so again: a span
+                                        * would not pay */
             return;
         }
     }
@@ -98,8 +98,8 @@ void come_to_birth(run *r, int32_t local, bool known)
     }
 }
 
-/* Take a signal as born: it has no source, or its first values may have been lost in an outage. Only
- * what is still to come is unborn. */
+/* Treat a signal as born: it has no source, or its first values may have been lost in an outage. Only
+ * a signal whose first value is still to come is unborn. */
 void be_born(run *r, int32_t local)
 {
     while (r->births[local] < r->part->signals[local].births) {
@@ -113,7 +113,7 @@ void set_stale(run *r, int32_t local, int64_t t)
     const signal_plan *s = &r->part->signals[local];
     const int64_t stale_at = sum(t, s->stale_after + 1);
     timers_set(&r->wake, r->part->plan->timers + s->perishable, stale_at);
-    /* An update that changes no value sets no other alarm. */
+    /* An update that changes no value sets no other alarm, so this one is set here. */
     r->at.alarm = least(r->at.alarm, stale_at);
 }
 
@@ -148,7 +148,7 @@ static void take_signal(run *r, int64_t t, int32_t local, const rv_number *value
     }
 }
 
-/* Append an occurrence of an event with its payload; `known` false: it may not have occurred. */
+/* Append an occurrence of an event with its payload; if not `known`, it may not have occurred. */
 void keep_payload(run *r, int32_t local, bool known, const rv_number *fields)
 {
     occurrences *o = &r->payloads[local];
@@ -216,7 +216,7 @@ rv_number number_said(const rv_update *u)
     return (given && (u->says == RV_SAYS_YES)) ? u->value : unknown;
 }
 
-/* Take one update at `t` in full. An event with a key concerns a run by the key's value. */
+/* Take one update at `t` in full. Whether an event with a key concerns a run depends on the key. */
 void apply_update(run *r, int64_t t, const incoming *in)
 {
     const rv_update *u = in->update;
@@ -236,8 +236,8 @@ void apply_update(run *r, int64_t t, const incoming *in)
     }
 }
 
-/* Count for rv_stale() that a signal went stale at `t`: in the root run of the first part that reads
- * it, as every run notices. */
+/* Count for rv_stale() that a signal went stale at `t`. Every run notices, so only the root run of the
+ * first part that reads it counts. */
 static void count_stale(const run *r, int64_t t, int32_t name)
 {
     const rv_monitor *m = r->home->monitor;
@@ -249,7 +249,7 @@ static void count_stale(const run *r, int64_t t, int32_t name)
     }
 }
 
-/* A signal becomes unknown at `t`, as its timer rang. */
+/* A signal becomes unknown at `t`, as its timer fired. */
 void go_stale(run *r, int64_t t, int32_t perishable)
 {
     const int32_t local = r->part->perishable[perishable];
@@ -263,8 +263,8 @@ void go_stale(run *r, int64_t t, int32_t perishable)
     hold(r, t, local, &stale);
 }
 
-/* A name is unknown at every position. Atoms that speak of one position only because it has a source
- * (`needs`) have one reason less to be read again at the next. */
+/* Make a name unknown at every position. Atoms that are momentary only if it has a source (`needs`) have
+ * one reason less to be read again at the next position. */
 void mark_absent(run *r, bool event, int32_t local)
 {
     const part *p = r->part;

@@ -14,7 +14,7 @@ void settle_margins(rv_monitor *m, int64_t t);
 const subscription *subscriptions_of(const rv_monitor *m, int32_t name, int32_t *count);
 bool distribute(rv_monitor *m, const rv_update *updates, int32_t count);
 
-/* ---- crowd.c: the next position at which something can change */
+/* ---- positions.c: the next position at which something can change */
 int64_t tick_from(int64_t gap, int64_t t);
 bool may_go_on(const run *r, int32_t index);
 void tidy_failing(run *r);
