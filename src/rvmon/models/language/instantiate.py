@@ -134,14 +134,15 @@ def _argument(
     kind = resolver.typed(parameter, own)
     is_number = kind.placed_as is BaseType.INT and not (kind.extents or kind.fields)
     if is_number and not parameter.reference:
-        real = kind.base is BaseType.DOUBLE
-        value = resolver.constant(written, scope, real=real)
-        symbols.check_range(value, kind, written.span)
-        return sc.ConstantSymbol(value, real)
+        return _constant(written, kind, scope, resolver)
     symbol = resolver.symbol(written, scope)
     match symbol:
-        case sc.PlacedSymbol(place, slot):
-            fits = place is kind.placed_as and slot.extents[len(slot.indices) :] == kind.extents
+        case sc.PlacedSymbol(place, slot, is_real):
+            has_shape = slot.extents[len(slot.indices) :] == kind.extents
+            is_alike = is_real == (kind.base is BaseType.DOUBLE)
+            fits = place is kind.placed_as and has_shape and is_alike
+        case sc.ConstantSymbol() if is_number and kind.const:
+            return _constant(written, kind, scope, resolver)
         case sc.RecordSymbol():
             fits = bool(kind.fields) and len(symbols.leaves(symbol)) == symbols.count_of(kind)
         case _:
@@ -153,6 +154,16 @@ def _argument(
         fix = f"`{parameter.name}` is declared as {parameter.type.span.text}"
         raise model_error("TA015", "this argument is of the wrong kind", written.span, fix)
     return symbol
+
+
+def _constant(
+    written: syntax.Expression, kind: sc.ResolvedType, scope: sc.Scope, resolver: Resolver
+) -> sc.ConstantSymbol:
+    """The value of an argument, converted to the type of its parameter."""
+    real = kind.base is BaseType.DOUBLE
+    value = resolver.constant(written, scope, real=real)
+    symbols.check_range(value, kind, written.span)
+    return sc.ConstantSymbol(value, real)
 
 
 MAX_CASES = 16  # limit for the cases, each an edge, of a guard with clocks under `or`

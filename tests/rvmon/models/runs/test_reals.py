@@ -99,6 +99,8 @@ def test_operators(term, expected):
         "automaton B { location l invariant x <= 0 location m start l edge l -> m do d = half() }",
         "automaton B(const double own) { location l invariant x <= 0 location m start l "
         "edge l -> m do d = own / 2 }\nb = B(VALUE)\nsystem b",
+        "automaton B(const double &own) { location l invariant x <= 0 location m start l "
+        "edge l -> m do d = own / 2 }\nb = B(WHOLE)\nsystem b",
         "automaton B(double own) { location l invariant x <= 0 location m start l "
         "edge l -> m do d = own / 2 }\nb = B(VALUE)\nsystem b",
     ],
@@ -138,6 +140,27 @@ def test_what_needs_an_integer_refuses_a_fraction(declared, code):
         loads_network(text)
         return
     assert code in codes_of(loads_network, text)
+
+
+@pytest.mark.parametrize(
+    ("parameter", "argument", "code"),
+    [
+        ("double &d", "last", ""),
+        ("double &d", "rounds", "TA015"),
+        ("int[0,9] &d", "last", "TA015"),
+        ("double &d[2]", "seen", ""),
+        ("const double &d", "GAIN", ""),
+        ("const int[0,9] &d", "GAIN", "TA004"),
+        ("const int[0,9] &d", "TEN", "TA007"),
+    ],
+)
+def test_a_template_takes_a_variable_of_the_kind_of_its_parameter(parameter, argument, code):
+    template = f"\nautomaton B({parameter}) {{ location l start l }}\nb = B({argument})\n"
+    text = "const int TEN = 10\n" + MODEL + template + "system Room, b"
+    if not code:
+        loads_network(text)
+        return
+    assert codes_of(loads_network, text) == [code]
 
 
 def test_nothing_is_proved_of_them():
