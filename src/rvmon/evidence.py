@@ -66,7 +66,9 @@ def pack(entries: Mapping[str, bytes]) -> bytes:
             entry.create_system, entry.external_attr = 3, 0o100644 << 16
             packed.writestr(entry, body)
     if made.tell() > MOST_BYTES:
-        raise RvmonError(f"evidence of {made.tell():,} bytes is too much: evaluate fewer at once")
+        raise RvmonError(
+            f"evidence of {made.tell():,} bytes is too large: evaluate fewer recordings at once"
+        )
     return made.getvalue()
 
 
@@ -95,7 +97,9 @@ def unpack(path: str) -> dict[str, bytes]:
             is_packed = any(entry.compress_type != zipfile.ZIP_STORED for entry in found)
             is_doubled = len({entry.filename for entry in found}) < len(found)
             if is_packed or is_doubled or sum(entry.file_size for entry in found) > len(data):
-                raise RvmonError(f"{path} is no evidence: entries are packed, doubled or overlap")
+                raise RvmonError(
+                    f"{path} is no evidence: entries are compressed, doubled or overlap"
+                )
             entries = {entry.filename: packed.read(entry) for entry in found}
     except (zipfile.BadZipFile, EOFError, ValueError, NotImplementedError, RuntimeError) as error:
         raise TamperedError(f"{path} is no evidence, or a damaged one: {error}") from None
@@ -103,7 +107,7 @@ def unpack(path: str) -> dict[str, bytes]:
     # `pack` depends only on the entries, so any other byte in the file is a change.
     if pack(entries) != data:
         other = [name for name, body in entries.items() if _sum(name, body) not in sums]
-        names = ", ".join(other) or "its form, or what it lacks"
+        names = ", ".join(other) or "its format, or a missing entry"
         raise TamperedError(f"{path} was changed since it was written: {names}")
     return entries
 
@@ -247,7 +251,7 @@ def texts_of(
             one[0][0] for one in parts
         ]
     except (OSError, ValueError) as error:
-        raise RvmonError(f"--evidence: these files cannot be kept: {error}") from None
+        raise RvmonError(f"--evidence: these files cannot be archived: {error}") from None
 
 
 def coverage_json(covered: Mapping[str, tuple[Model, Iterable[Hits]]]) -> bytes:
@@ -319,7 +323,7 @@ def opened_evidence(path: str) -> Iterator[Kept]:
     judged = items.keys() if about.judging else {item.partition("/")[0] for item in items}
     known = about.recordings if about.judging else about.specs
     if other := judged - known.keys():
-        raise TamperedError(f"{VERDICTS} is of others: {', '.join(sorted(other))}")
+        raise TamperedError(f"{VERDICTS} has verdicts on others: {', '.join(sorted(other))}")
     with TemporaryDirectory(prefix="rvmon-") as temporary:
         folder = Path(temporary, "evidence")
         try:

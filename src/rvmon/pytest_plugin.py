@@ -169,14 +169,14 @@ def _explained(report: Report, spec: Spec, wrong: list[str]) -> str:
     from rvmon.report.run_text import print_report
 
     text = text_of(lambda printer: print_report(report, spec.checked, printer))
-    return f"not as wanted: {', '.join(wrong)}\n{text.strip()}"
+    return f"not as expected: {', '.join(wrong)}\n{text.strip()}"
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Declare the setting `rv_recordings`."""
     parser.addini(
         _RECORDINGS,
-        "recordings by which .rv files are tested, as patterns from the root: *.csv, bags/*",
+        "recordings with which .rv files are tested, as patterns from the root: *.csv, bags/*",
         type="linelist",
         default=[],
     )
@@ -206,7 +206,7 @@ class SpecFile(pytest.File):
         patterns = self.config.getini(_RECORDINGS)
         found = sorted({path for pattern in patterns for path in root.glob(pattern)})
         if not found:
-            raise self.CollectError(f"{_RECORDINGS} = {' '.join(patterns)}: there is no such file")
+            raise self.CollectError(f"{_RECORDINGS} = {' '.join(patterns)}: no file matches")
         for recording in found:
             for name in spec.requirements:
                 shown = f"{recording.relative_to(root)}::{name}"

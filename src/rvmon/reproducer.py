@@ -174,7 +174,7 @@ def _expect_inside(case: Case) -> None:
     findings = Findings()
     load_files(Source(case.spec, text_of_file(case.spec)), Path(case.spec).parent, findings)
     for finding in findings.diagnostics:
-        raise RvmonError(f"{finding.message}: import it by a path from the file that does")
+        raise RvmonError(f"{finding.message}: import it by a relative path")
 
 
 @contextmanager
@@ -233,8 +233,8 @@ def _described(packed: zipfile.ZipFile) -> Case:
     version = msgspec.json.decode(text, type=_Version)
     if version.format != FORMAT:
         raise RvmonError(
-            f"a reproducer of a later form ({version.format}), made by rvmon {version.rvmon}: "
-            "install that or a later one"
+            f"a reproducer of a later format ({version.format}), made by rvmon {version.rvmon}: "
+            "install that version or a later one"
         )
     return msgspec.json.decode(text, type=Case)
 
@@ -242,7 +242,7 @@ def _described(packed: zipfile.ZipFile) -> Case:
 def _unpack(packed: zipfile.ZipFile, folder: Path) -> None:
     entries = [entry for entry in packed.infolist() if not entry.is_dir()]
     if len(entries) > MOST_FILES:
-        raise RvmonError(f"holds more than {MOST_FILES} files, and is no reproducer")
+        raise RvmonError(f"contains more than {MOST_FILES} files, and is no reproducer")
     left = MOST_BYTES
     for entry in entries:
         target = placed(folder, entry.filename)

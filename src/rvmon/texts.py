@@ -86,7 +86,7 @@ def cannot_read(path: str | Path, error: OSError | UnicodeDecodeError) -> str:
         is_wide = error.object[:2] in (BOM_UTF16_LE, BOM_UTF16_BE)
         return (
             f"{path}: not UTF-8 text ({error.reason} at byte {error.start}): is this a binary file?"
-            " A text in another encoding has to be translated: "
+            " A text in another encoding has to be converted: "
             f"`iconv -f {'utf-16' if is_wide else 'latin1'} -t utf-8`"
         )
     why = f"{path}: {error.strerror or error}"

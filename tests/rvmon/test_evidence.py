@@ -62,7 +62,7 @@ def test_what_was_changed_is_named_and_nothing_hides_beside_the_entries(file):
     for name, entries in {
         "verdicts.csv": {**ENTRIES, "verdicts.csv": b"R1,F\n"},
         "more": {**ENTRIES, "more": b""},
-        "its form, or what it lacks": {k: body for k, body in ENTRIES.items() if k != "empty"},
+        "its format, or a missing entry": {k: body for k, body in ENTRIES.items() if k != "empty"},
     }.items():
         with pytest.raises(TamperedError, match=f"changed since it was written: {name}"):
             unpack(file(zipped([*entries.items(), ("SHA256SUMS", sums)])))
@@ -91,9 +91,9 @@ def overlapping():
 @pytest.mark.parametrize(
     ("data", "told"),
     [
-        (zipped([("a", b"0" * 1_000_000)], zipfile.ZIP_DEFLATED), "packed, doubled or overlap"),
-        (zipped([("a", b"1"), ("b", b"2")]).replace(b"b", b"a"), "packed, doubled or overlap"),
-        (overlapping(), "packed, doubled or overlap"),
+        (zipped([("a", b"0" * 1_000_000)], zipfile.ZIP_DEFLATED), "compressed, doubled or overlap"),
+        (zipped([("a", b"1"), ("b", b"2")]).replace(b"b", b"a"), "compressed, doubled or overlap"),
+        (overlapping(), "compressed, doubled or overlap"),
         (b"", "no evidence"),
         (b"PK\5\6" + b"\xff" * 18, "no evidence"),
         (pack(ENTRIES)[:-30], "no evidence"),
@@ -109,5 +109,5 @@ def test_one_that_is_too_large_is_not_read(file, monkeypatch):
     monkeypatch.setattr(keep, "MOST_BYTES", 100)
     with pytest.raises(RvmonError, match="larger than"):
         unpack(file(data))
-    with pytest.raises(RvmonError, match="too much"):
+    with pytest.raises(RvmonError, match="too large"):
         pack(ENTRIES)

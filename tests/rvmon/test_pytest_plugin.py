@@ -62,14 +62,14 @@ def test_requirements_fail_their_test_unless_their_verdict_is_wanted(folder):
     told.assert_outcomes(failed=4, passed=2)
     told.stdout.fnmatch_lines(
         [
-            "*not as wanted: D1*",
+            "*not as expected: D1*",
             "*had to become false between 0 s and 2 s*",
             "*then within 2 s*",
-            "*not as wanted: D2*",
+            "*not as expected: D2*",
         ]
     )
     told.stdout.no_fnmatch_line("*pytest_plugin.py:*")
-    told.stdout.fnmatch_lines(["*not as wanted: D1*", "*its own*", "*not as wanted: D1*"])
+    told.stdout.fnmatch_lines(["*not as expected: D1*", "*its own*", "*not as expected: D1*"])
     told.stdout.re_match_lines([r".* requirements .*", r" +P +F +NT +I", r"D1 +1 +2"])
 
 

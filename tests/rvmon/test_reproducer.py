@@ -171,13 +171,13 @@ def test_sizes_are_bounded(tmp_path, monkeypatch, says):
     path = made(tmp_path / "a.rvcase", {"a.rv": RV, "a.csv": "t,p\n" + "0,1\n" * (1 << 19)})
     assert "is larger than" in says(2, "run", path).err
     path = made(tmp_path / "b.rvcase", {f"{number}": "" for number in range(10)})
-    assert "holds more than 9 files" in says(2, "why", path).err
+    assert "contains more than 9 files" in says(2, "why", path).err
 
 
 @each(
     ("case", "told"),
     [
-        ({"format": 2}, "of a later form (2), made by rvmon 9.9: install that"),
+        ({"format": 2}, "of a later format (2), made by rvmon 9.9: install that"),
         ({"format": "x"}, "no reproducer, or a damaged one"),
         ({"attempt": None}, "no reproducer, or a damaged one"),
         ({"spec": "b.rv"}, "b.rv"),

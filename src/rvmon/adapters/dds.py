@@ -84,7 +84,7 @@ class DdsSource:
         try:
             self._participant = DomainParticipant(self._domain)
         except DDSException as error:
-            raise RvmonError(f"domain {self._domain} of DDS cannot be joined: {error}") from None
+            raise RvmonError(f"DDS domain {self._domain} cannot be joined: {error}") from None
         if self._verdicts is not None:
             self._writer = self._written(self._verdicts)
         self._finder = BuiltinDataReader(self._participant, BuiltinTopicDcpsPublication)
@@ -131,7 +131,7 @@ class DdsSource:
         """Start an outage of a topic; messages already queued are older and do not end it."""
         with self._lock:
             self._losses[topic.name] = self._losses.get(topic.name, 0) + 1
-            self._feed.lose(topic.name, "DDS has lost some", before=True, for_good=True)
+            self._feed.lose(topic.name, "DDS has lost messages", before=True, for_good=True)
         self._wake.set(True)
 
     def _written(self, topic: str) -> Any:
@@ -191,7 +191,7 @@ class DdsSource:
             on_sample_lost=lambda *_: self._lose(topic),
             on_sample_rejected=lambda *_: self._lose(topic),
             on_requested_incompatible_qos=lambda *_: self._give_up(
-                name, "a publisher has another type, or other terms"
+                name, "a publisher has another type or an incompatible QoS"
             ),
         )
         self._listeners.append(listener)

@@ -67,7 +67,7 @@ def address_of(url: str) -> Address:
     if "#" in levels[:-1] or any(
         len(level) > 1 and ("+" in level or "#" in level) for level in levels
     ):
-        raise RvmonError(f"{url}: in a filter, + stands for one level, # for all behind the last /")
+        raise RvmonError(f"{url}: in a filter, + stands for one level, # for all after the last /")
     user, password = unquote(parts.username or ""), unquote(parts.password or "")
     return Address(parts.hostname, port, user, password, topics)
 
@@ -121,12 +121,12 @@ class MqttSource:
         try:
             self._client.connect(self._address.host, self._address.port)
         except OSError as error:
-            raise RvmonError(f"no broker of MQTT answers at {where}: {error}") from None
+            raise RvmonError(f"no MQTT broker answers at {where}: {error}") from None
         self._client.loop_start()
         if not self._connected.wait(_PATIENCE_S) or self._refusal:
             self.__exit__()
             why = self._refusal or f"it did not answer in {_PATIENCE_S:.0f} s"
-            raise RvmonError(f"the broker of MQTT at {where} refuses: {why}")
+            raise RvmonError(f"the MQTT broker at {where} refuses: {why}")
         return self
 
     def _on_connect(self, client: Any, _: object, __: object, reason: Any, ___: object) -> None:
@@ -141,7 +141,7 @@ class MqttSource:
     def _on_subscribe(self, _: object, __: object, ___: object, reasons: Any, ____: object) -> None:
         if reasons[0].is_failure:
             self._refusal = (
-                f"the broker allows nobody to read {self._address.topics} ({reasons[0]})"
+                f"the broker does not allow reading {self._address.topics} ({reasons[0]})"
             )
             _log.warning("the broker refuses: %s", self._refusal)  # an outage then goes on
         elif self._connected.is_set():  # not the first time: the outage ends

@@ -55,7 +55,7 @@ class Ros1Source:
         try:
             rospy.get_master().getPid()
         except OSError as error:
-            raise RvmonError(f"no master of ROS 1 answers (ROS_MASTER_URI): {error}") from None
+            raise RvmonError(f"no ROS 1 master answers (ROS_MASTER_URI): {error}") from None
         rospy.init_node("rvmon", anonymous=True, disable_signals=True)
         if self._verdicts is not None:
             from std_msgs.msg import String
@@ -169,7 +169,7 @@ def uses_sim_time() -> bool:
     try:
         return bool(rospy.get_param("/use_sim_time", False))
     except OSError as error:
-        raise RvmonError(f"no master of ROS 1 answers (ROS_MASTER_URI): {error}") from None
+        raise RvmonError(f"no ROS 1 master answers (ROS_MASTER_URI): {error}") from None
 
 
 def _rospy() -> Any:
@@ -177,7 +177,7 @@ def _rospy() -> Any:
         import rospy
     except ImportError:
         raise RvmonError(
-            "ROS 1 needs rospy, which is not there: source the setup of your ROS, or install "
-            "python3-rospy and add its folder to PYTHONPATH"
+            "ROS 1 needs rospy, which is not installed: source the setup file of your ROS, or "
+            "install python3-rospy and add its folder to PYTHONPATH"
         ) from None
     return rospy

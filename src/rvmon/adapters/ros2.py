@@ -44,8 +44,8 @@ class Ros2Source:
             import rclpy
         except ImportError:
             raise RvmonError(
-                "ROS 2 needs rclpy, which is not there: source the setup of your ROS; or read "
-                "dds:DOMAIN, which needs no ROS"
+                "ROS 2 needs rclpy, which is not installed: source the setup file of your ROS; or "
+                "read dds:DOMAIN, which needs no ROS"
             ) from None
         self._rclpy = rclpy
         self._feed = feed
@@ -127,10 +127,10 @@ class Ros2Source:
             qos,
             event_callbacks=SubscriptionEventCallbacks(
                 message_lost=lambda _: self._feed.lose(
-                    name, "some before it were lost", before=True
+                    name, "earlier messages were lost", before=True
                 ),
                 incompatible_qos=lambda _: self._feed.lose(
-                    name, "a publisher promises less than those before it", for_good=True
+                    name, "a publisher offers a weaker QoS than those before it", for_good=True
                 ),
             ),
         )

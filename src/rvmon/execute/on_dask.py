@@ -53,8 +53,8 @@ def execute_on_dask(work: Work, address: str) -> Iterator[Any]:
     except (OSError, ValueError) as error:
         cause = str(error).splitlines()[0]
         raise RvmonError(
-            f"no scheduler of Dask answers at {address} ({cause}): begin one by `dask scheduler`, "
-            f"and workers by `dask worker {address} --nthreads 1`"
+            f"no Dask scheduler answers at {address} ({cause}): start one with `dask scheduler`, "
+            f"and workers with `dask worker {address} --nthreads 1`"
         ) from None
     with client:
         yield from _Pool(client, cloudpickle.dumps(work.begin), work).results()
@@ -87,7 +87,7 @@ class _Pool:
             threads = sum(self._client.nthreads().values())
             seen = time.monotonic() if threads else seen
             if time.monotonic() - seen > NO_WORKERS_S:
-                raise WorkerLostError("the scheduler of Dask has no worker: begin one")
+                raise WorkerLostError("the Dask scheduler has no worker: start one")
             if not self._suspects:
                 for one in islice(left, max(0, 2 * threads - len(self._tasks))):
                     self._submit(*one)

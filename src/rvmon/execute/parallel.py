@@ -193,7 +193,7 @@ class _Pool:
             with _without_interrupts():
                 process.start()
         except OSError as error:
-            message = f"no process can be begun ({error.strerror}): use fewer (jobs)"
+            message = f"no process can be started ({error.strerror}): use fewer (jobs)"
             raise RvmonError(message) from None
         there.close()
         self._workers.append(_Worker(process, here, begun))
@@ -277,7 +277,7 @@ class _Pool:
         self._give_back(worker, worker.tasks)
         if self._work.instead is None:
             message = (
-                f"the process that had {self._work.what} {number + 1} was ended from outside, as "
+                f"the process that had {self._work.what} {number + 1} was killed from outside, as "
                 "systems do when memory runs out: use fewer processes (jobs)"
             )
             self._fail(number, WorkerLostError(message))
@@ -315,7 +315,7 @@ def _end_of(process: BaseProcess) -> str:
         name = signal.Signals(-code).name
     except ValueError:
         name = str(-code)
-    return f"its process was ended by signal {name}"
+    return f"its process was killed by signal {name}"
 
 
 @contextmanager

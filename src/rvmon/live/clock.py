@@ -112,7 +112,7 @@ def refuse_far(t_ns: int, now_ns: int) -> None:
         far = "years from" if abs(t_ns - now_ns) > FAR_NS else "ahead of"
         raise TraceError(
             f"the stamp {format_ticks(t_ns)} is {far} the clock, which shows "
-            f"{format_ticks(now_ns)}: set the clocks of the machines alike, or go by the stamps: a "
-            "stamp in each line and no --realtime, in Python their clock, such as "
-            "WallClock(since_1970=True)"
+            f"{format_ticks(now_ns)}: synchronise the clocks of the machines, or use the time of "
+            "the stamps: a stamp in each line and no --realtime, in Python a clock of their epoch, "
+            "such as WallClock(since_1970=True)"
         )

@@ -93,7 +93,7 @@ class Driver:
     ) -> None:
         for name, count in (("room", room), ("most_robots", most_robots)):
             if type(count) is not int or count < 1:
-                raise RvmonError(f"{name}={count!r}: expected a whole number from 1 on")
+                raise RvmonError(f"{name}={count!r}: expected a whole number of at least 1")
         if isinstance(spec, str | PathLike):
             raise RvmonError(f"a file, not a specification: use `rvmon.load({fspath(spec)!r})`")
         for callback in filter(None, (on_judged, on_failure, on_report)):
@@ -162,7 +162,7 @@ class Driver:
             while wait and self._waiting.is_full and not self._is_closed:
                 self._has_room.wait()
             if self._is_closed:
-                raise RvmonError("the monitors were closed: no sample is taken any more")
+                raise RvmonError("the monitors are closed and take no further samples")
             if not self._is_room_for(robot):
                 return False
             if t_ns is None:
@@ -304,7 +304,9 @@ class Driver:
         """Exclusive use of the monitors; refuses callbacks, which run in the middle of a step."""
         with self._working:
             if self._is_working:
-                raise RvmonError("a callback cannot drive, close or replace what calls it")
+                raise RvmonError(
+                    "a callback cannot drive or close its driver, or replace the specification"
+                )
             self._is_working = True
             try:
                 yield

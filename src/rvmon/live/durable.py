@@ -66,7 +66,7 @@ class DurableMonitor:
         self, spec: Spec, path: str | Path, report: Report, *, every: int = 1000, **options: Any
     ) -> None:
         if type(every) is not int or every < 1:
-            raise RvmonError(f"every={every!r}: expected a whole number from 1 on")
+            raise RvmonError(f"every={every!r}: expected a whole number of at least 1")
         self._path = Path(path)
         self._report = report
         self._every = every
@@ -102,8 +102,8 @@ class DurableMonitor:
             self.mark = int(count), int(check)
         except (ValueError, LookupError, TypeError, RecursionError):
             raise SnapshotError(
-                f"{self._path}: no run of a monitor, or its beginning is damaged: name another "
-                "file, or delete this one to start again"
+                f"{self._path}: no run of a monitor, or its start is damaged: name another file, "
+                "or delete this one to start again"
             ) from None
         try:
             return spec.restore(data)

@@ -216,7 +216,7 @@ class Robot:
                 self._come_to(t)
             return self._refusal
         if is_too_late:
-            self._refusal = f"sample at {format_ticks(t)}: it exceeds the delay that is allowed"
+            self._refusal = f"sample at {format_ticks(t)}: it exceeds the allowed delay"
             self._lost += 1
             return self._refusal
         self._samples += 1

@@ -109,7 +109,7 @@ class Attempt(Record):
     def _work_out(self, name: str) -> None:
         """Compute a lazy field and those found with it; `Record` calls it on the first access."""
         if not hasattr(self, "_details"):
-            raise AttributeError("of this attempt nothing more is known")
+            raise AttributeError("nothing more is known of this attempt")
         for attribute, value in self._details(self, self._noted, name).items():
             setattr(self, attribute, value)
 

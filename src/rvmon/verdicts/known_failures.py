@@ -81,9 +81,9 @@ class KnownFailures(Struct, frozen=True):
             what = f"{failure.requirement} ({failure.reason})"
             if failed and self.today > failure.until:
                 until = failure.until
-                yield f"{what} was known to fail until {until}, and fails still: {failed[0]}"
+                yield f"{what} was known to fail until {until}, and still fails: {failed[0]}"
             elif about and not failed:
-                yield f"{what} is known to fail, and does not: take it out of the file"
+                yield f"{what} is known to fail, but does not: remove it from the file"
 
 
 NONE_KNOWN = KnownFailures()  # no failure is accepted

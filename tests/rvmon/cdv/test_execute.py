@@ -23,7 +23,7 @@ pytestmark = [
 ]
 
 BAD = {
-    "kill": (Ending.LOST, "its process was ended by signal SIGKILL"),
+    "kill": (Ending.LOST, "its process was killed by signal SIGKILL"),
     "exit": (Ending.LOST, "its process ended, with exit code 5"),
     "crash": (Ending.CRASHED, "ZeroDivisionError: by zero"),
     "go back": (Ending.CRASHED, "TimeOrderError: sample at -1 ns is not after"),

@@ -190,7 +190,7 @@ CHANGED = {
     "requirements": (loosened, 1, "R2#1 in a.csv: verdict was P, is F"),
     "the matrix": (longer("matrix.csv"), 1, "does not follow"),
     "its page": (longer("matrix.html"), 1, "does not follow"),
-    "verdicts of others": (of_others, 1, "of others: b.csv"),
+    "verdicts of others": (of_others, 1, "on others: b.csv"),
     # What another rvmon made is not wholly checked.
     "the law": (about(law=1), 2, "this rvmon has law"),
     "the programs": (about(programs={}), 2, "another rvmon"),

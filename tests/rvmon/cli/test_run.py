@@ -115,7 +115,7 @@ def test_a_process_that_is_killed_costs_only_what_was_not_judged(files, capsys, 
     told = capsys.readouterr()
     assert code == 2
     assert (
-        "I.csv: not evaluated: the process that had recording 2 was ended from outside" in told.err
+        "I.csv: not evaluated: the process that had recording 2 was killed from outside" in told.err
     )
     assert "use fewer processes (jobs)" in told.err
     assert "Traceback" not in told.err

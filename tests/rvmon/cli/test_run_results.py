@@ -159,7 +159,7 @@ def test_known_failures_fail_no_run(folder, capsys, says):
     assert "1 fail as is known, 1 not triggered" in index
     assert main(["cover", "c.db", "--strict"]) == 0
     known.write_text(known.read_text().replace("2999", "1999", 1))
-    assert "R1 (worn) was known to fail until 1999-01-01, and fails" in says(1, *words).err
+    assert "R1 (worn) was known to fail until 1999-01-01, and still fails" in says(1, *words).err
 
 
 def test_what_fails_stands_first_in_the_list_of_recordings(folder):

@@ -200,7 +200,7 @@ def test_a_worker_that_is_lost_is_told_with_its_task(jobs):
     found, error = given(execute([*range(0, 200, 2), 13, 8], doing(halved), jobs=jobs, what="run"))
     assert found == [*range(100)]
     assert isinstance(error, WorkerLostError)
-    assert "the process that had run 101 was ended from outside" in str(error)
+    assert "the process that had run 101 was killed from outside" in str(error)
     assert "memory runs out: use fewer processes (jobs)" in str(error)
 
 
@@ -271,7 +271,7 @@ def test_a_task_whose_process_ends_can_have_a_result(jobs):
     found = [*execute(tasks, doing(work), jobs=jobs, instead=told, timeout_s=1)]
     assert found == [
         *range(10),
-        (13, False, "its process was ended by signal SIGKILL"),
+        (13, False, "its process was killed by signal SIGKILL"),
         (20, True, "it took more than 1 s"),
         *range(11, 20),
         (40, False, "its process ended, with exit code 3"),

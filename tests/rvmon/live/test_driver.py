@@ -263,7 +263,7 @@ def test_with_a_lag_samples_are_put_in_order():
     door.at(10)
     status = door.driver.status()[""]
     assert (status.verdicts["D1"], status.lost) == (Verdict.INCONCLUSIVE, 1)
-    assert "it exceeds the delay" in status.refusal
+    assert "it exceeds the allowed delay" in status.refusal
 
 
 def test_a_clock_that_goes_back_begins_a_new_run():

@@ -60,7 +60,7 @@ def test_after_its_last_day_it_is_a_failure_again(known):
     failing = report("monday/3.csv", "R1", "R2")
     assert over.failures(failing) == ["R1"]
     assert list(over.remarks([failing])) == [
-        "R1 (the motor is slow) was known to fail until 2030-01-31, and fails still: monday/3.csv"
+        "R1 (the motor is slow) was known to fail until 2030-01-31, and still fails: monday/3.csv"
     ]
 
 
@@ -68,7 +68,7 @@ def test_what_fails_no_more_is_to_be_taken_out(known):
     """If a recording that it is about shows it; one that it is not about does not."""
     fine = report("monday/3.csv", "R2")
     assert list(known("2030-01-01").remarks([fine])) == [
-        "R1 (the motor is slow) is known to fail, and does not: take it out of the file"
+        "R1 (the motor is slow) is known to fail, but does not: remove it from the file"
     ]
     assert list(known("2030-01-01").remarks([report("tuesday/3.csv", "R2")])) == []
 
