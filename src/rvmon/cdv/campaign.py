@@ -314,8 +314,7 @@ def unreachable_items(
             ]
             fix = did_you_mean(place, known, "take it out of `Closing.unreachable`")
             raise UnknownNameError(
-                f"the campaign calls unreachable what there is not: {place}: nothing that is "
-                f"measured is called so; {fix}"
+                f"the campaign declares unreachable an item that does not exist: {place}; {fix}"
             )
         if not (closing and unreachable.by_model):
             reasons |= dict.fromkeys(items, unreachable.reason)

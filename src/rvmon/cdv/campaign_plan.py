@@ -100,7 +100,7 @@ def _refuse_names(campaign: Campaign, tests: Sequence[Test]) -> None:
         seen.add(test.name.lower())
     for name in (*campaign.robots, *(test.name for test in tests)):
         if not _FILE_NAME.fullmatch(name):
-            raise TestError(f"`{name}`: a file is called so: use letters, digits, - . + _ only")
+            raise TestError(f"`{name}` cannot be a file name: use letters, digits, - . + _ only")
 
 
 def _made(campaign: Campaign, strategy: str, tests: int, seed: int) -> list[Test]:
@@ -109,7 +109,7 @@ def _made(campaign: Campaign, strategy: str, tests: int, seed: int) -> list[Test
     for test in generated:
         if not isinstance(test, campaign.test):
             kind = campaign.test.__name__
-            raise TestError(f"strategy `{strategy}` makes {test!r}, which is no {kind}")
+            raise TestError(f"strategy `{strategy}` makes {test!r}, which is not a {kind}")
         if test.strategy != strategy:
             raise TestError(
                 f"test `{test.name}` of strategy `{strategy}` names another strategy, "

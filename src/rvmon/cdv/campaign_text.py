@@ -219,7 +219,7 @@ def left_over(folder: Path, before: Mapping[Path, int]) -> str:
         return ""
     places = " and ".join(f"{count} in {folder / part}" for part, count in counts.items())
     return (
-        f"files that this campaign did not write stay: {places}; who plays the folder plays those "
+        f"files that this campaign did not write remain: {places}; playing the folder plays those "
         "too: remove them, or name a new --out"
     )
 

@@ -202,7 +202,7 @@ def _contradicted(results: Results) -> Iterator[tuple[str, str]]:
             if (group, item) in out
         }
         wrong = "; ".join(f"{test} hits {item}" for item, test in first.items())
-        yield f"no test hits what is called unreachable ({robot})", wrong
+        yield f"no test hits an item that is declared unreachable ({robot})", wrong
 
 
 def _unlisted(results: Results) -> Iterator[tuple[str, str]]:
@@ -216,7 +216,7 @@ def _unlisted(results: Results) -> Iterator[tuple[str, str]]:
         }
         if first:
             wrong = "; ".join(f"{test} enters `{state}`" for state, test in sorted(first.items()))
-            yield f"the states of the campaign are all that are entered ({robot})", wrong
+            yield f"only states of the campaign are entered ({robot})", wrong
 
 
 def _gate_name(campaign: Campaign, played: Played) -> str:
@@ -266,12 +266,12 @@ def refuse_unknown(campaign: Campaign) -> None:
         "robot": {"", *campaign.robots},
     }
     named = [
-        (f"a failure is expected of the {kind}", kind, getattr(why, kind))
+        (f"an expected failure names the {kind}", kind, getattr(why, kind))
         for why in campaign.expected_failures
         for kind in there_is
     ]
     for strategy, gate in campaign.gates.items():
-        named.append(("there is a gate of the strategy", "strategy", strategy))
+        named.append(("a gate names the strategy", "strategy", strategy))
         named += [
             ("a gate names the requirement", "requirement", name)
             for name in (*gate.untriggered, *gate.inconclusive)

@@ -104,7 +104,7 @@ class Bench:
     def __init__(
         self, name: str, robot: Robot, code: Code | None = None, *, covers: bool = False
     ) -> None:
-        with blamed(f"robot `{name}`: what plays its tests cannot be made", RvmonError):
+        with blamed(f"robot `{name}`: its system cannot be made", RvmonError):
             self._system: System[Any] = robot.system()
         self._checker = Checker(robot.requirements, robot.coverages if covers else ())
         self._meter = None if code is None else Meter(code)
@@ -163,7 +163,7 @@ def run_of(system: System[Any], test: Test, observer: Observer) -> Run:
     except Exception as error:  # noqa: BLE001 - the system may raise anything
         return Run(observer.last_ns, error=f"{type(error).__name__}: {error}")
     if not isinstance(run, Run):
-        return Run(observer.last_ns, error=f"`play` returned {run!r}, which is no Run")
+        return Run(observer.last_ns, error=f"`play` returned {run!r}, which is not a Run")
     if run.end_ns < observer.last_ns:
         message = f"it ended at {run.end_ns} ns, before its last sample, at {observer.last_ns} ns"
         return replace(run, end_ns=observer.last_ns, error=run.error or message)

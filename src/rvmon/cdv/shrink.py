@@ -148,8 +148,8 @@ class _Search(Generic[_Test]):
         for name in self.test.removable:
             if name not in known:
                 raise UnknownNameError(
-                    f"`{type(self.test).__name__}.removable` names `{name}`, which is no field of "
-                    f"it: there are {', '.join(sorted(known))}"
+                    f"`{type(self.test).__name__}.removable` names `{name}`, which is not one of "
+                    f"its fields: there are {', '.join(sorted(known))}"
                 )
 
     def run(self) -> bool:
@@ -266,7 +266,7 @@ def save_regression(campaign: Campaign, test: Test, folder: Path) -> tuple[Path,
     """Write a regression test as `NAME.json` and `test_NAME.py`, and return these paths."""
     function = re.sub(r"\W", "_", test.name)
     text = _FILE.format(
-        found=f"Replays {test.name}, and sees that it comes out as it should.",
+        found=f"Replays {test.name} and checks that it comes out as expected.",
         test=json.dumps(f"{test.name}.json"),
         function=function,
         law=", ".join(f"{name} is {verdict}" for name, verdict in test.expected.items())

@@ -75,7 +75,7 @@ class Code:
             if named[block.name] is not block:
                 raise RvmonError(
                     f"two blocks are called `{block.name}`, in {block.path} and in "
-                    f"{named[block.name].path}: name one otherwise"
+                    f"{named[block.name].path}: rename one"
                 )
 
 
@@ -157,13 +157,13 @@ class Run:
             TypeError: `end_ns` is not an int, a figure is not a number, or a state is not a pair.
         """
         if type(self.end_ns) is not int:
-            raise TypeError(f"end_ns is to be an int, not {self.end_ns!r}")
+            raise TypeError(f"end_ns must be an int, not {self.end_ns!r}")
         for name, figure in self.figures.items():
             if not isinstance(figure, int | float):
-                raise TypeError(f"figure `{name}` is to be a number, not {figure!r}")
+                raise TypeError(f"figure `{name}` must be a number, not {figure!r}")
         for entry in self.states:
             if [*map(type, entry)] != [int, str]:
-                raise TypeError(f"a state is to be given as (ns, name), not {entry!r}")
+                raise TypeError(f"a state must be given as (ns, name), not {entry!r}")
 
 
 class Observer:

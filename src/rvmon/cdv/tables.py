@@ -127,7 +127,7 @@ def _notes(summary: CampaignSummary, figures: RobotSummary) -> tuple[str, ...]:
     strategies = figures.strategies.values()
     if crashed := sum(len(strategy.errors[Ending.CRASHED]) for strategy in strategies):
         tests = counted(crashed, "test")
-        notes.append(f"The robot's code crashed in {tests}, evaluated all the same.")
+        notes.append(f"The robot's code crashed in {tests}, evaluated nevertheless.")
     ends = {Ending.HUNG: "{} hung: {}, and was ended", Ending.LOST: "{} was lost: {}"}
     for ending, text in ends.items():
         ended = (item for strategy in strategies for item in strategy.errors[ending].items())

@@ -181,7 +181,7 @@ def test_what_an_earlier_campaign_left_is_told(tmp_path, capsys):
     assert "stay" not in capsys.readouterr().err
     assert main([*run, "--tests", "1"]) == 0
     told = capsys.readouterr().err
-    assert f"files that this campaign did not write stay: 1 in {tmp_path / 'tests'}" in told
+    assert f"files that this campaign did not write remain: 1 in {tmp_path / 'tests'}" in told
     assert {path.name for path in (tmp_path / "tests").iterdir()} == {
         f"pseudorandom-00{number}.json" for number in range(2)
     }

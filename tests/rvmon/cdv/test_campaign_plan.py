@@ -43,7 +43,7 @@ def test_an_unknown_strategy_is_told(campaign):
     ("made", "told"),
     [
         (lambda *_: 1 / 0, "strategy `s` cannot make its tests: ZeroDivisionError"),
-        (lambda *_: ["a"], "strategy `s` makes 'a', which is no Test"),
+        (lambda *_: ["a"], "strategy `s` makes 'a', which is not a Test"),
         (
             lambda *_: [cdv.Test(name="a", strategy="other", seed=1)],
             "test `a` of strategy `s` names another strategy, `other`",

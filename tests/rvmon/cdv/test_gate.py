@@ -132,12 +132,12 @@ def test_what_is_called_unreachable_is_not_to_be_hit(campaign):
         out = cdv.Closing(unreachable=[cdv.Unreachable("states", item, "the motor is weak")])
         options = {"states": ("down", "up", "away"), "closing": out}
         found = judged(campaign(LOW, ("lower", {"level": 2.0}), **options))
-        assert found.checks == {"no test hits what is called unreachable (toy)": wrong}
+        assert found.checks == {"no test hits an item that is declared unreachable (toy)": wrong}
 
 
 def test_a_state_that_the_campaign_does_not_list_is_not_to_be_entered(campaign):
     """A name that was misspelt would leave another state uncovered, and nobody told."""
-    wrong = "the states of the campaign are all that are entered (toy): low enters `up`"
+    wrong = "only states of the campaign are entered (toy): low enters `up`"
     for states, expected in ((("down", "upp"), [wrong]), (("down", "up"), []), ((), [])):
         assert judged(campaign(LOW, states=states)).wrong == expected
 

@@ -140,7 +140,7 @@ def print_closed(closed: Closed, printer: Printer) -> None:
     _print_reasons("cannot be met: the model proves it:", _by_text(closed.proved), printer)
     _print_reasons("cannot be met, by the campaign's argument:", _by_text(closed.argued), printer)
     if closed.wrong:
-        printer.line(("declared unreachable, and met all the same:", "bold red"))
+        printer.line(("declared unreachable, but met:", "bold red"))
         for goal, test in closed.wrong.items():
             printer.line(wrapped(f"{name_of(goal)}, by {test}", printer.width))
     if closed.open:
@@ -149,7 +149,7 @@ def print_closed(closed: Closed, printer: Printer) -> None:
             printer.line(wrapped(name_of(goal), printer.width))
             printer.line((wrapped(f"  {hole}", printer.width), "dim"))
         group, item = next(iter(closed.open))
-        printer.line("What no test can show goes to `Closing.unreachable`, with the reason:")
+        printer.line("List what no test can show in `Closing.unreachable`, with the reason:")
         printer.line(f'  cdv.Unreachable({group!r}, {item!r}, "…")')
     style = "bold red" if closed.wrong else "yellow" if closed.open else "bold green"
     left = f"; {closed.ended}" if closed.ended else ""
@@ -181,9 +181,9 @@ def _suite_text(closed: Closed) -> str:
 
 
 def _print_trade(trade: Trade, printer: Printer) -> None:
-    title = f"Of {trade.mutants + trade.held_out} mutants of the code are killed"
+    title = f"Killed mutants of the code ({trade.mutants + trade.held_out} in all)"
     printer.line((title, "bold"))
-    heads = ["by", "tests", f"of {trade.mutants} that choose", f"of {trade.held_out} held out"]
+    heads = ["by", "tests", f"of {trade.mutants} used to choose", f"of {trade.held_out} held out"]
     rows = [
         (_choice_text(choice.times), *map(str, (choice.tests, choice.killed, choice.held_out)))
         for choice in trade.choices

@@ -210,7 +210,8 @@ class Proposer:
             test: object = make()
         kind = self._campaign.test
         if not isinstance(test, kind):
-            raise TestError(f"`{what}` of the campaign makes {test!r}, which is no {kind.__name__}")
+            name = kind.__name__
+            raise TestError(f"`{what}` of the campaign makes {test!r}, which is not a {name}")
         return test
 
     def _name(self) -> str:

@@ -127,7 +127,7 @@ TIMES_CPU = 10
 """A test hangs if it takes more processor time than `LEAST_CPU_S` plus `TIMES_CPU` times the time
 it takes on the unchanged code."""
 
-HANGS = "it computes without an end: its time, or its memory, was all"
+HANGS = "it does not end: its time, or its memory, is used up"
 """The text for both limits: an endless loop that also allocates may reach either one first."""
 
 PATIENCE_S = 60.0

@@ -321,15 +321,15 @@ def print_mutants(
 
 
 ABOUT = (
-    "A mutant is one small wrong change. It is killed if a test that is fine without it is not "
-    "fine with it; one that survives asks what is missing. Which third a mutant is in follows from "
-    "a hash of its name. "
+    "A mutant is one small wrong change. It is killed if a test that goes well without it goes "
+    "wrong with it; a survivor asks what is missing. A hash of its name puts a mutant into a third "
+    "of all. "
 )
 
 
 def mutation_page(report: MutationReport) -> str:
     """The report as an HTML page without scripts or further files."""
-    hidden = "" if report.shows_held_out else f"Those {HELD_OUT} are counted, and not shown."
+    hidden = "" if report.shows_held_out else f"Those {HELD_OUT} are counted, but not shown."
     return render(
         "mutation.html",
         title=f"Mutants: {report.campaign}",

@@ -214,7 +214,7 @@ def equivalents(path: str | Path, mutants: Iterable[Mutant]) -> dict[str, str]:
                 arguments |= dict.fromkeys(changes, because)
             case _:
                 raise RvmonError(
-                    f"{path}: `{name}` is to have an argument, `because`, and `mutants`: their "
+                    f"{path}: `{name}` must have an argument, `because`, and `mutants`: their "
                     "changes by their names, as --list shows them"
                 )
     return arguments
@@ -228,6 +228,6 @@ def _refuse_others(
             raise RvmonError(f"{path}: no mutant `{name}`: --list lists them")
         if change != known[name]:
             raise RvmonError(
-                f"{path}: `{name}` is by now another change, {known[name]}: look whether it is "
+                f"{path}: `{name}` is now another change, {known[name]}: check whether it is "
                 "equivalent, and correct the entry"
             )

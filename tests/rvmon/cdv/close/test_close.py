@@ -173,7 +173,7 @@ def test_unknown_items_are_refused(dials):
         (("of_rigth", "two"), "did you mean `of_right: two`?"),
         (("", "return 1"), "take it out"),
     ):
-        with pytest.raises(UnknownNameError, match="calls unreachable what there is not") as caught:
+        with pytest.raises(UnknownNameError, match="declares unreachable an item") as caught:
             close(dials(unreachable=[Unreachable(*place, "so")]), "machine", jobs=1)
         assert fix in str(caught.value)
 
