@@ -88,11 +88,11 @@ def group_of(
     """A group without axes.
 
     Raises:
-        ValueError: two items have one name.
+        ValueError: two items have the same name.
     """
     named = {item.name: item for item in items}
     if len(named) < len(items):
-        raise ValueError(f"two items of `{name}` have one name")
+        raise ValueError(f"two items of `{name}` have the same name")
     return Group(name, subject, named, weight, title=title)
 
 
@@ -100,7 +100,7 @@ def model_of(groups: Sequence[Group]) -> Model:
     """A model of some groups.
 
     Raises:
-        ValueError: two groups have one name.
+        ValueError: two groups have the same name.
 
     >>> gaze = group_of("gaze", Subject.COVERPOINT, [Item("yes"), Item("no", goal=3)])
     >>> [*model_of([gaze]).groups]
@@ -109,7 +109,7 @@ def model_of(groups: Sequence[Group]) -> Model:
     named = {group.name: group for group in groups}
     if len(named) < len(groups):
         double = next(group.name for group in groups if named[group.name] is not group)
-        raise ValueError(f"two groups of one name: `{double}`")
+        raise ValueError(f"two groups have the same name, `{double}`")
     return Model(named)
 
 

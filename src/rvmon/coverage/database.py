@@ -150,7 +150,7 @@ class Database:
         words = f"SELECT item, reason FROM {table} ORDER BY item, reason"  # noqa: S608 - our words
         for item, reason in self._tables.execute(words):
             if item not in named:
-                raise damaged(self._path, "a reason stands at no item")
+                raise damaged(self._path, "a reason refers to no item")
             reasons.setdefault(named[item], []).append(str(reason))
         return reasons
 

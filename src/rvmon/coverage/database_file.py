@@ -81,9 +81,9 @@ def readable_errors(path: str | Path | None) -> Iterator[None]:
         why = _WORDS.get(code, f"{error}: {_ANEW}")
         raise CoverageError(f"error: {name_of(path)}: {why}") from None
     except UnicodeDecodeError:
-        raise damaged(path, "a text in it is none") from None
+        raise damaged(path, "a text in it is not valid UTF-8") from None
     except UnicodeEncodeError as error:
-        what = f"{error.object!a} has signs that stand for no character: name it otherwise"
+        what = f"{error.object!a} has characters that are not valid Unicode: rename it"
         raise CoverageError(f"error: {name_of(path)}: {what}") from None
     except OverflowError:
         raise CoverageError(f"error: {name_of(path)}: a number is beyond 2**63") from None
@@ -121,7 +121,7 @@ def damaged(path: str | Path | None, what: str) -> CoverageError:
 _ANEW = "restore a copy of it, or delete it and record again"  # the advice for a damaged file
 
 _WORDS = {
-    sqlite3.SQLITE_NOTADB: "this is no database: give one that `rvmon run --coverage` wrote",
+    sqlite3.SQLITE_NOTADB: "this is not a database: give one that `rvmon run --coverage` wrote",
     sqlite3.SQLITE_CORRUPT: f"the file is damaged: {_ANEW}",
     sqlite3.SQLITE_TOOBIG: f"a text in it is longer than {_LONGEST:,} bytes: {_ANEW}",
     sqlite3.SQLITE_BUSY: f"another process has been writing to it for {PATIENCE_S:g} s: try again "
@@ -135,7 +135,7 @@ _WORDS = {
     "and its folder, or copy it elsewhere",
     sqlite3.SQLITE_IOERR: "the disk reports an error: copy the file elsewhere, and look at the "
     "disk",
-    sqlite3.SQLITE_NOMEM: "the memory is not enough for it",
+    sqlite3.SQLITE_NOMEM: "there is not enough memory for it",
 }
 """Explanation and advice by SQLite's error codes."""
 
@@ -158,7 +158,7 @@ def _refuse(path: Path, *, create: bool) -> None:
     if stat.S_ISDIR(status.st_mode):
         raise CoverageError(f"error: {path} is a folder: name a database in it")
     if not stat.S_ISREG(status.st_mode):
-        raise CoverageError(f"error: {path} is no regular file: name one")
+        raise CoverageError(f"error: {path} is not a regular file: name one")
 
 
 def _opened(path: str | Path | None, *, create: bool) -> sqlite3.Connection:
@@ -208,7 +208,7 @@ def _check(database: sqlite3.Connection, path: str | Path | None) -> None:
         if sql is not None or not str(name).startswith("sqlite_autoindex_")
     }
     if statements != set(TABLES):
-        raise damaged(path, "its tables are not those of a database of coverage")
+        raise damaged(path, "its tables are not those of a coverage database")
 
 
 def _is_new(database: sqlite3.Connection) -> bool:

@@ -124,8 +124,8 @@ def hole_of(goal: Goal, model: Model, hits: Hits, nearest: str = "") -> Hole:
     >>> states = group_of("states", Subject.STATES, [Item("up"), Item("down")])
     >>> hits = {"states": {"up": Hit(3)}}
     >>> print(hole_of(("transitions", "up → down"), model_of([states, ways]), hits, "lift-2"))
-    `up` is followed by `down`. `up` was entered 3 times and left otherwise; needs a run in which \
-`up` ends in `down`. Nearest: lift-2.
+    `up` is followed by `down`. `up` was entered 3 times, but left another way; needs a run in \
+which `down` follows `up`. Nearest: lift-2.
     """
     group = model.groups[goal[0]]
     item = group.items[goal[1]]
@@ -150,7 +150,7 @@ def hole_of(goal: Goal, model: Model, hits: Hits, nearest: str = "") -> Hole:
                 words = (f"state `{item.name}`", "it was never entered", "a run that enters it")
             case _:
                 what = f"`{item.text}`" if item.text else f"`{item.name}`"
-                words = (what, "no run has shown it", "a run in which it is so")
+                words = (what, "no run has shown it", "a run that shows it")
     return Hole(*words, nearest)
 
 
@@ -165,9 +165,9 @@ def _of_cross(group: Group, name: str, model: Model, hits: Hits) -> tuple[str, s
     most = _in_common(bins, hits.get(group.name, {}))
     why = f"no run has shown {' or '.join(never)}"
     if not never:
-        why = f"each of them was seen, {most} of {len(bins)} at one instant"
+        why = f"each was seen, but at most {most} of {len(bins)} at once"
     together = ", ".join(f"{axis} {bin_}" for axis, bin_ in named)
-    return f"at one instant {together}", why, "a run in which all of them meet"
+    return f"at one instant {together}", why, "a run with all of them at once"
 
 
 def _of_transition(states: Sequence[str], hits: Hits) -> tuple[str, str, str]:
@@ -176,11 +176,11 @@ def _of_transition(states: Sequence[str], hits: Hits) -> tuple[str, str, str]:
         if len(states) > 2 and count_of(hits, TRANSITIONS, _ARROW.join((source, target))):
             continue
         entered = count_of(hits, STATES, source)
-        why = f"`{source}` was entered {_times(entered)} and left otherwise"
+        why = f"`{source}` was entered {_times(entered)}, but left another way"
         if not entered:
             why = f"`{source}` was never entered"
-        return what, why, f"a run in which `{source}` ends in `{target}`"
-    return what, "both were seen, never one upon the other", "a run that goes straight on"
+        return what, why, f"a run in which `{target}` follows `{source}`"
+    return what, "both were seen, but never one right after the other", "a run with both in a row"
 
 
 def _of_code(group: Group, name: str, text: str, hits: Hits) -> tuple[str, str, str]:
@@ -190,13 +190,13 @@ def _of_code(group: Group, name: str, text: str, hits: Hits) -> tuple[str, str, 
     if last:
         what = f"`{block}`, line {first}: `{text}`"
         if int(first) in ran:
-            return what, f"line {first} ran, and went another way", "that it goes this way"
-        return what, f"line {first} never ran", "a run that comes to it"
+            return what, f"line {first} ran, but took another way", "a run that takes this one"
+        return what, f"line {first} never ran", "a run that reaches it"
     what = f"`{block}`, line {first}: `{text}`"
     before = [line for line in ran if line < int(first)]
     if not before:
         return what, "nothing of the block before it ran", f"a run that enters `{block}`"
-    why = f"line {before[-1]} before it ran, and did not lead there"
+    why = f"line {before[-1]} before it ran, but did not lead there"
     return what, why, f"a run that goes on from line {before[-1]} to it"
 
 
@@ -204,13 +204,13 @@ def _of_requirement(group: Group, name: str, hits: Hits) -> tuple[str, str, str]
     what = f"{group.name}, “{group.title}”: " if group.title else f"{group.name}: "
     triggered = count_of(hits, group.name, TRIGGERED)
     if name == TRIGGERED:
-        return f"{what}it is triggered", "its trigger never came", "a run in which it comes"
+        return f"{what}it is triggered", "its trigger never occurred", "a run in which it occurs"
     if name == PASSED:
         what += "it passes"
-        needs = "a run in which it is triggered and met"
+        needs = "a run in which it is triggered and passes"
     elif name in (JUST_BEFORE, AT):
         what += f"the response comes {name}"
-        needs = "a response as late as is allowed"
+        needs = "a response as late as allowed"
     else:
         part = name.removesuffix(_DECIDES)
         what += f"{part} makes the difference"
@@ -227,12 +227,12 @@ def _of_automaton(group: Group, name: str, text: str, hits: Hits) -> tuple[str, 
     of = f"{requirement}, “{group.title}”" if group.title else requirement
     if group.subject is Subject.STATES:
         required = f", where it still requires: {text}" if text else ""
-        why, needs = "no attempt was there", "a run that leads an attempt there"
+        why, needs = "no attempt was there", "a run in which an attempt gets there"
         return f"{of}: location {name} of its automaton{required}", why, needs
     source = name.partition(_ARROW)[0]
     was_there = count_of(hits, locations_of(requirement), source)
     attempts = "1 attempt was" if was_there == 1 else f"{was_there:,} attempts were"
-    why = f"{attempts} in {source}, and took another way"
+    why = f"{attempts} in {source}, but took another way"
     if not was_there:
         why = f"no attempt was in {source}"
     upon = f", upon: {text}" if text else ""

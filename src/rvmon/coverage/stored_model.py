@@ -167,7 +167,7 @@ def _refuse_nonsense(name: str, group: StoredGroup) -> None:
 def _refuse_conflict(
     path: str | Path | None, name: str, own: StoredGroup, other: StoredGroup
 ) -> None:
-    fix = "keep the two in databases of their own, or give the changed one another name"
+    fix = "keep the two in separate databases, or give the changed one another name"
     for what, before, after in (
         ("is about", own.subject.value, other.subject.value),
         ("has weight", own.weight, other.weight),

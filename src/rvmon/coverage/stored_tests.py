@@ -53,8 +53,8 @@ def entry_of(test: TestRecord, hits: Hits, places: Mapping[tuple[str, str], int]
     unknown = next(((group, item) for group, item, *_ in flat if (group, item) not in places), None)
     if unknown is not None:
         raise CoverageError(
-            f"error: test `{test.name}` hit `{unknown[1]}` of `{unknown[0]}`, which is in no model "
-            "that was declared: declare its model first"
+            f"error: test `{test.name}` hit `{unknown[1]}` of `{unknown[0]}`, which no declared "
+            "model has: declare its model first"
         )
     _refuse_nonsense(test, flat)
     clean = _storable(test)
@@ -213,6 +213,6 @@ def _unpacked(hits: bytes, ids: NDArray[np.int64], order: NDArray[np.intp]) -> R
         raise ValueError("its hits make no sense")
     places = order[np.searchsorted(ids, own, sorter=order)]
     if np.any(ids[places] != own):
-        raise ValueError("it hit an item that is not there")
+        raise ValueError("it hit an item that does not exist")
     sort = np.argsort(places)
     return Row(places[sort].astype(np.int32), counts[sort], firsts[sort])

@@ -114,5 +114,5 @@ def test_what_is_expected_to_fail_goes_with_the_test(campaign, tmp_path):
 
 def test_one_name_for_two_things(campaign, tmp_path):
     (tmp_path / "further.rv").write_text(FURTHER.replace("place", "pace"))
-    with pytest.raises(RvmonError, match="two groups of one name: `pace`"):
+    with pytest.raises(RvmonError, match="two groups have the same name, `pace`"):
         coverage_model(campaign, "new")

@@ -43,7 +43,7 @@ def rewritten(path, *words):
 def test_what_is_no_database_is_named(path):
     text = path.with_name("t.csv")
     text.write_text("t,a\n0,1\n" * 1000)
-    assert "this is no database: give one that" in refused(text)
+    assert "this is not a database: give one that" in refused(text)
     foreign = path.with_name("f.db")
     rewritten(foreign, "CREATE TABLE t (a)")
     assert "a database of something else" in refused(foreign)
@@ -133,7 +133,7 @@ def test_what_is_no_file_is_said_so(tmp_path):
     with pytest.raises(CoverageError, match="is a folder: name a database in it"):
         read([tmp_path])
     os.mkfifo(tmp_path / "pipe")
-    with pytest.raises(CoverageError, match="is no regular file"):
+    with pytest.raises(CoverageError, match="is not a regular file"):
         Database.open(tmp_path / "pipe")
     with pytest.raises(CoverageError, match="name another"):
         Database.open("a\0b")

@@ -25,23 +25,23 @@ IDLE = {"t": [0, 1, 20], "level": [1.0, 1.0, 1.0], "calm": [True, True, True]}
 @pytest.mark.parametrize(
     ("runs", "goal", "words"),
     [
-        ([IDLE], ("height", "high"), "`level >= 5`. No run has shown it; needs a run in which it "),
+        ([IDLE], ("height", "high"), "`level >= 5`. No run has shown it; needs a run that shows"),
         (
             [IDLE, {**IDLE, "level": [7.0, 1.0, 1.0]}],
             ("both", "high × wild"),
-            "at one instant height high, mood wild. No run has shown mood wild; needs a run in "
-            "which all of them meet. Nearest: 1.",
+            "at one instant height high, mood wild. No run has shown mood wild; needs a run "
+            "with all of them at once. Nearest: 1.",
         ),
         (
             [IDLE],
             ("R1", "triggered"),
-            "R1, “It stops in time”: it is triggered. Its trigger never came; needs a run in which",
+            "R1, “It stops in time”: it is triggered. Its trigger never occurred; needs a run",
         ),
         (
             [IDLE, {**IDLE, "go": [None, True, None], "stop": [None, None, True], "t": [0, 1, 2]}],
             ("R1", "at the deadline"),
             "R1, “It stops in time”: the response comes at the deadline. It was triggered once, "
-            "but never like this; needs a response as late as is allowed. Nearest: 1.",
+            "but never like this; needs a response as late as allowed. Nearest: 1.",
         ),
         (
             [IDLE],
@@ -124,26 +124,26 @@ WAYS = {"A → B": HIT, "B → C": HIT}
 @each(
     ("goal", "hits", "why", "needs"),
     [
-        (("both", "a × x"), {}, "each of them was seen, 0 of 2 at one instant", "all of them"),
-        (("both", "a × x"), {"both": {"a × y": HIT, "b × y": HIT}}, "seen, 1 of 2", "all of them"),
+        (("both", "a × x"), {}, "seen, but at most 0 of 2 at once", "all of them"),
+        (("both", "a × x"), {"both": {"a × y": HIT, "b × y": HIT}}, "at most 1 of 2", "all"),
         (("states", "A"), {}, "it was never entered", "a run that enters it"),
-        (("transitions", "A → B"), {"states": {"B": HIT}}, "`A` was never entered", "ends in `B`"),
-        (("pairs of transitions", "A → B → C"), {"states": {"A": HIT}}, "`A` was", "in `B`"),
-        (("pairs of transitions", "A → B → C"), {"transitions": {"A → B": HIT}}, "`B`", "in `C`"),
-        (("pairs of transitions", "A → B → C"), {"transitions": WAYS}, "both were", "straight on"),
+        (("transitions", "A → B"), {"states": {"B": HIT}}, "`A` was never entered", "`B` follows"),
+        (("pairs of transitions", "A → B → C"), {"states": {"A": HIT}}, "`A` was", "`B` follows"),
+        (("pairs of transitions", "A → B → C"), {"transitions": {"A → B": HIT}}, "`B`", "`C`"),
+        (("pairs of transitions", "A → B → C"), {"transitions": WAYS}, "both were", "in a row"),
         (("statements of f", "4"), {"statements of f": {"9": HIT}}, "nothing of", "enters `f`"),
         (
             ("statements of f", "9"),
             {"statements of f": {"3": HIT, "4": HIT}},
-            "line 4 before it ran, and did not lead there",
+            "line 4 before it ran, but did not lead there",
             "a run that goes on from line 4 to it",
         ),
-        (("branches of f", "3 → 9"), {"statements of f": {"4": HIT}}, "3 never ran", "comes to it"),
-        (("branches of f", "3 → 9"), {"statements of f": {"3": HIT}}, "3 ran, and", "this way"),
-        (("`R` locations", "A"), {}, "no attempt was there", "leads an attempt there"),
+        (("branches of f", "3 → 9"), {"statements of f": {"4": HIT}}, "3 never ran", "reaches it"),
+        (("branches of f", "3 → 9"), {"statements of f": {"3": HIT}}, "3 ran, but", "this one"),
+        (("`R` locations", "A"), {}, "no attempt was there", "an attempt gets there"),
         (("`R` edges", "A → P"), {"`R` locations": {"A": HIT}}, "1 attempt was in A", "takes it"),
         (("`R` edges", "A → P"), {"`R` locations": {"A": Hit(2)}}, "2 attempts were", "takes it"),
-        (("R", "passed"), {}, "it was never triggered", "triggered and met"),
+        (("R", "passed"), {}, "it was never triggered", "triggered and passes"),
         (("R", "`p` decides"), {"R": {"triggered": Hit(2)}}, "triggered 2 times", "without `p`"),
     ],
 )
