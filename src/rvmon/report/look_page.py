@@ -96,7 +96,7 @@ def values(column: Column) -> str:
         shown = [label if len(label) <= _LONGEST else f"{label[:_LONGEST]}…" for label in labels]
         return f"{', '.join(shown[:_MOST_LABELS])}{more}"
     if column.is_event:
-        return f"{column.updates:,} times" if column.updates != 1 else "once"
+        return f"{column.occurrences:,} times" if column.occurrences != 1 else "once"
     if column.shape.kind is Kind.BOOL:
         taken = column.course.extremes
         return " and ".join(word for word, n in (("false", 0.0), ("true", 1.0)) if n in taken)

@@ -2,6 +2,7 @@
 
 import json
 import random
+from pathlib import Path
 
 import pytest
 from tests.tools.each import each
@@ -135,6 +136,14 @@ def test_a_number_that_is_infinite_somewhere_has_no_range(tmp_path, put):
     text = (tmp_path / "a.rv").read_text()
     assert "y stays in its range" in text
     assert "x stays in its range" not in text
+
+
+def test_an_event_with_a_payload_is_counted_only_where_it_occurs(put, says):
+    picks = ['{"id":1}' if t in (4, 7) else "false" for t in range(20)]
+    lines = [f'{{"t":{t},"x":{t},"pick":{pick}}}\n' for t, pick in enumerate(picks)]
+    says(0, "init", put("a.jsonl", "".join(lines)), "-o", "a.rv")
+    [line] = [line for line in Path("a.rv").read_text().splitlines() if "pick(" in line]
+    assert line.endswith("# 2 times")
 
 
 def test_what_comes_a_century_late_is_allowed_for(put, says):

@@ -59,6 +59,12 @@ def test_with_a_specification_what_feeds_its_requirements_comes_first(recording,
     assert "left out: never: nothing feeds it" in told
 
 
+def test_reports_that_a_declared_event_does_not_occur_are_not_counted(recording, says):
+    told = says(0, "look", recording / "base.csv", recording / "base.rv").out
+    [line] = [line for line in told.splitlines() if line.split()[:1] == ["stop"]]
+    assert "2 times" in line
+
+
 def test_a_page_holds_each_name_and_nothing_of_it_is_markup(recording, capsys):
     path = recording / "base.csv"
     path.write_text(path.read_text().replace("mode", "<b>mode"))

@@ -139,7 +139,8 @@ class Column(Struct):
     name: str  # as in the recording
     shape: Shape  # becomes an event if `guessed_event`
     guessed_event: bool = False  # whether its truth values were taken for an event
-    updates: int = 0  # the number of updates; of a guessed event, of occurrences
+    updates: int = 0  # the number of updates; for an event, also reports that it did not occur
+    occurrences: int = 0  # of an event
     low: float | None = None  # least number seen; `None` if it is no number
     high: float | None = None  # greatest number seen; `None` if it is no number
     rate: float = 0.0  # updates per second; 0 if there were too few
@@ -211,7 +212,9 @@ class Column(Struct):
         times, values = times[known], values[known]
         match self.shape.kind:
             case None:
-                self._occurred(times[values != 0])
+                occurred = times[values != 0]
+                self.occurrences += len(occurred)
+                self._occurred(occurred)
             case Kind.BOOL:
                 self._truths(times, values.astype(np.bool_))
             case Kind.INT | Kind.REAL if len(values):
@@ -243,7 +246,7 @@ class Column(Struct):
         self.longest_silence = max(self.longest_gap, end - self._last)
         if self._is_like_event(start, end, samples - self.updates):
             self.shape = replace(self.shape, kind=None)
-            self.guessed_event, self.updates = True, self._trues
+            self.guessed_event, self.occurrences = True, self._trues
 
     def _is_like_event(self, start: int, end: int, silent: int) -> bool:
         if self.shape.kind is not Kind.BOOL or not self._trues:

@@ -271,7 +271,7 @@ def _declared(column: Column) -> str:
 
 def _remarks(column: Column) -> Iterator[str]:
     if column.is_event:
-        yield f"{column.updates} times" if column.updates != 1 else "once"
+        yield f"{column.occurrences} times" if column.occurrences != 1 else "once"
         if column.guessed_event:
             yield "a guess: true in single samples"
         return
