@@ -276,13 +276,13 @@ MOST_OTHERS = 5  # the most requirements that are tried together as premises of 
 def implications_among(
     together: Together,
     subjects: Sequence[Subject],
-    falling: Sequence[Subject],
+    fallible: Sequence[Subject],
     conflicts: Sequence[Conflict],
     deadline: float,
 ) -> tuple[list[Implication], bool]:
     """The requirements that one or several others imply, each with a minimal set of these.
 
-    Only requirements in `falling`, which can fail, are tested. Sets with a conflict are excluded
+    Only requirements in `fallible`, which can fail, are tested. Sets with a conflict are excluded
     as premises, because they would imply anything.
 
     Returns:
@@ -293,7 +293,7 @@ def implications_among(
     # An implied requirement is not used as a premise, or two equivalent ones would both be dropped.
     dropped: set[str] = set()
     bad = [frozenset(conflict.ids) for conflict in conflicts]
-    for implied in reversed(falling):
+    for implied in reversed(fallible):
         if time.monotonic() > deadline:
             return implications[::-1], False
         others = [

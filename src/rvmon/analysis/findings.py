@@ -55,8 +55,8 @@ def examine(spec: CheckedSpec, subjects: Sequence[Subject], seconds: float) -> E
     together = Together(spec)
     search = ConflictSearch(together, sound, deadline)
     search.run()
-    falling = [subject for subject in sound if results[subject.id].fail is not False]
-    implications, done = implications_among(together, sound, falling, search.conflicts, deadline)
+    fallible = [subject for subject in sound if results[subject.id].fail is not False]
+    implications, done = implications_among(together, sound, fallible, search.conflicts, deadline)
     return Examination(
         results,
         tuple(search.conflicts),

@@ -171,13 +171,13 @@ class _Reader:
         """The edges of a location: target, condition on the input, guard, and clock assignments."""
         automaton = self.automaton
         cuts = automaton.locations[index].cuts
-        can_be = self.first if index == automaton.initial else self.later
-        never = self.letters.keys() - can_be
+        possible = self.first if index == automaton.initial else self.later
+        never = self.letters.keys() - possible
         rows_of: dict[tuple[int, tuple[int, ...], tuple[Cube, ...]], list[tuple[int, ...]]] = {}
         for regions in product(*(range(len(clock_cuts) + 1) for clock_cuts in cuts)):
             row = row_of(automaton, index, regions)
             groups: dict[tuple[int, tuple[int, ...]], list[Cube]] = {}
-            for cube in sorted(can_be, reverse=True):
+            for cube in sorted(possible, reverse=True):
                 letter = self.letters[cube]
                 edge = automaton.edges[row * automaton.classes + automaton.class_of[letter]]
                 if edge >= 0:

@@ -102,37 +102,37 @@ class _Machine:
         compiled: CompiledRequirement,
         automaton: Automaton,
         letters: Mapping[Cube, int],
-        can_be: Set[Cube],
+        possible: Set[Cube],
     ) -> None:
         self.automaton, self.letters = automaton, letters
-        self.edges = [self._edges(index, can_be) for index in range(len(automaton.locations))]
+        self.edges = [self._edges(index, possible) for index in range(len(automaton.locations))]
         ends = (
             compiled.forecaster.of(location.residual, (), None) for location in automaton.locations
         )
-        self.words = [{True: "P", False: "F", None: "?"}[end] for end in ends]
-        while ahead := {at: w for at, e in enumerate(self.edges) if (w := self._ahead(at, e))}:
+        self.verdicts = [{True: "P", False: "F", None: "?"}[end] for end in ends]
+        while ahead := {at: w for at, e in enumerate(self.edges) if (w := self._implied(at, e))}:
             for index, word in ahead.items():
-                self.words[index] = word
-        for index, word in enumerate(self.words):
+                self.verdicts[index] = word
+        for index, word in enumerate(self.verdicts):
             # A verdict is final, so all letters lead back to the same state.
             if word != "?":
-                self.edges[index] = dict.fromkeys(can_be, index)
+                self.edges[index] = dict.fromkeys(possible, index)
 
-    def _edges(self, index: int, can_be: Set[Cube]) -> Edges:
+    def _edges(self, index: int, possible: Set[Cube]) -> Edges:
         if index <= PASSED:
-            return dict.fromkeys(can_be, index)
+            return dict.fromkeys(possible, index)
         automaton = self.automaton
         row = automaton.bases[index] * automaton.classes
         return {
             cube: automaton.targets[automaton.edges[row + automaton.class_of[letter]]]
             for cube, letter in self.letters.items()
-            if cube in can_be
+            if cube in possible
         }
 
-    def _ahead(self, index: int, edges: Edges) -> str:
+    def _implied(self, index: int, edges: Edges) -> str:
         """`P` or `F` if an undecided state moves to it with every letter; else ""."""
-        words = {self.words[target] for target in edges.values()}
-        return words.pop() if self.words[index] == "?" and words in ({"P"}, {"F"}) else ""
+        words = {self.verdicts[target] for target in edges.values()}
+        return words.pop() if self.verdicts[index] == "?" and words in ({"P"}, {"F"}) else ""
 
     def least(self, first: Set[Cube]) -> list[tuple[str, Edges]]:
         """The reachable states of the minimal automaton: the verdict and the edges of each.
@@ -140,14 +140,17 @@ class _Machine:
         The state at the trigger comes first; only letters in `first` are possible there.
         """
         edges_of = self.edges
-        blocks = refined(self.words, lambda at, of: tuple(of[to] for to in edges_of[at].values()))
+        blocks = refined(
+            self.verdicts, lambda at, of: tuple(of[to] for to in edges_of[at].values())
+        )
         initial = self.automaton.initial
-        is_open = self.words[initial] == "?"
+        is_open = self.verdicts[initial] == "?"
         begun = self._edges(initial, first) if is_open else self.edges[initial]
-        word, edges = self._ahead(initial, begun) or self.words[initial], _renamed(begun, blocks)
+        word = self._implied(initial, begun) or self.verdicts[initial]
+        edges = _renamed(begun, blocks)
         states = {
             block: (said, _renamed(its, blocks))
-            for block, said, its in zip(blocks, self.words, self.edges, strict=True)
+            for block, said, its in zip(blocks, self.verdicts, self.edges, strict=True)
         }
         states[START] = word, edges
         order = [*dict.fromkeys(edges.values())]

@@ -64,16 +64,16 @@ class Together:
         self,
         subjects: Sequence[Subject],
         offsets: Sequence[int],
-        well: Collection[int],
-        failed: Collection[int] = (),
+        passing: Collection[int],
+        failing: Collection[int] = (),
     ) -> bool | None:
         """Whether a run exists in which some attempts pass and some fail.
 
         Args:
             subjects: the requirements, each with one attempt.
             offsets: the ticks from the first trigger to the trigger of each attempt.
-            well: the indices of the attempts that must pass.
-            failed: the indices of the attempts that must fail.
+            passing: the indices of the attempts that must pass.
+            failing: the indices of the attempts that must fail.
 
         Returns:
             `False` is certain, `True` is not; `None` if the search was given up.
@@ -83,7 +83,7 @@ class Together:
         letters = self.letters(subjects)
         if letters is None:
             return None
-        search = _Search(self.spec, subjects, offsets, letters, well, failed)
+        search = _Search(self.spec, subjects, offsets, letters, passing, failing)
         waiting: list[State] = [(-1, tuple(None for _ in subjects))]
         seen = set(waiting)
         while waiting:
@@ -122,11 +122,11 @@ class _Search:
         subjects: Sequence[Subject],
         offsets: Sequence[int],
         letters: frozenset[Letter],
-        well: Collection[int],
-        failed: Collection[int],
+        passing: Collection[int],
+        failing: Collection[int],
     ) -> None:
-        self.well = well
-        self.failed = failed
+        self.passing = passing
+        self.failing = failing
         self.subjects = subjects
         self.offsets = offsets
         self.letters = letters
@@ -168,7 +168,7 @@ class _Search:
         )
 
     def _is_lost(self, index: int, spot: Spot | None) -> bool:
-        lost = [FAILED] if index in self.well else [PASSED] if index in self.failed else []
+        lost = [FAILED] if index in self.passing else [PASSED] if index in self.failing else []
         return spot is not None and spot[0] in lost
 
     def _cells(self, cell: int) -> Sequence[int]:
@@ -230,8 +230,8 @@ class _Search:
         if any(spot is None for spot in spots):
             return False
         at = [spot for spot in spots if spot is not None]
-        return all(self._passes(i, at[i], cell) for i in self.well) and all(
-            at[i][0] == FAILED for i in self.failed
+        return all(self._passes(i, at[i], cell) for i in self.passing) and all(
+            at[i][0] == FAILED for i in self.failing
         )
 
     def _passes(self, index: int, spot: Spot, cell: int) -> bool:

@@ -242,7 +242,7 @@ def choices_of(
     remembered = frozenset(_remembered(spec, leaves)) & spec.signals.keys() & {*names}
     options = _Options(spec, leaves, captured, remembered, windows)
     added = {name for window in windows for name in names_read(window) if name in read}
-    seen = _Seen(spec, leaves, remembered | added)
+    seen = _Keys(spec, leaves, remembered | added)
     kept: dict[tuple[object, ...], Valuation] = {}
     waiting = _defaults_first([options.of(name) for name in names])
     for _ in range(MOST_TRIED // MOST_VALUATIONS):
@@ -358,7 +358,7 @@ def _departing(options: Sequence[Sequence[T]], count: int) -> Iterator[tuple[T, 
         )
 
 
-class _Seen:
+class _Keys:
     """Makes keys of valuations: equal for valuations that no formula distinguishes."""
 
     def __init__(

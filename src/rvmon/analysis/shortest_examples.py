@@ -81,7 +81,7 @@ class Player:
 Goal = Callable[[Example], str | None]
 """Assigns an example to one of the wanted kinds; `None` if it is of no interest."""
 
-_PATIENCE = 6
+_FREE_WAITS = 6
 """The number of free waits after a sample; each further wait counts as a sample."""
 
 
@@ -111,14 +111,14 @@ class _Node(Struct, frozen=True):
     samples: tuple[Sample, ...]  # the samples so far
     end: int  # the end of the run, ticks
     held: int  # the place of the current values in `_Search.held`
-    stir: int  # the number of occurrences and of values other than false; quieter runs come first
+    activity: int  # see `_activity`; quieter runs come first
     at_cut: bool = False  # whether it waits at its end, after the last sample
     waits: int = 0  # the number of waits since the last sample
 
     @property
     def effort(self) -> int:
         """The number of samples, plus waits beyond a few: else endless waiting would come first."""
-        return len(self.samples) + max(0, self.waits - _PATIENCE)
+        return len(self.samples) + max(0, self.waits - _FREE_WAITS)
 
 
 def shortest_examples(
@@ -149,9 +149,9 @@ def shortest_examples(
     runs = 0
 
     def add(nodes: Iterator[_Node], order: int) -> None:
-        """Queue the next of several runs that are in order of effort, end and stir."""
+        """Queue the next of several runs that are in order of effort, end and activity."""
         for node in nodes:
-            heappush(heap, (node.effort, node.end, node.stir, order, node, nodes))
+            heappush(heap, (node.effort, node.end, node.activity, order, node, nodes))
             return
 
     for first in search.first():
@@ -177,7 +177,7 @@ def shortest_examples(
     return Found(examples, runs, not heap and search.choices.complete)
 
 
-def _stir(changes: Mapping[str, Value]) -> int:
+def _activity(changes: Mapping[str, Value]) -> int:
     """The number of occurrences, and of values other than false, in a sample."""
     return sum(value is not False for value in changes.values())
 
@@ -214,7 +214,7 @@ class _Search:
             if len(whole) == len(defaults) and number not in tried:
                 tried.add(number)
                 changes = self._changes(whole, {})
-                yield _Node((Sample(0, changes),), 0, number, _stir(changes))
+                yield _Node((Sample(0, changes),), 0, number, _activity(changes))
 
     def after(self, node: _Node, cut: int) -> Iterator[Iterator[_Node]]:
         """The continuations of a run by a sample and by waiting, each kind in order."""
@@ -227,20 +227,20 @@ class _Search:
         for t in {end + self.step} if soon else {cut - 1, cut}:
             if end < t < TIME_LIMIT:
                 waits = node.waits + 1
-                wait = _Node(node.samples, t, node.held, node.stir, at_cut=True, waits=waits)
+                wait = _Node(node.samples, t, node.held, node.activity, at_cut=True, waits=waits)
                 yield iter((wait,))
 
     def _sampled(self, node: _Node, t: int) -> Iterator[_Node]:
-        for stir, changes, valuation in self._further(node.held):
+        for activity, changes, valuation in self._further(node.held):
             said = {name: value for name, value in valuation.items() if value is not SILENT}
             number = self._number({**self.held[node.held], **said})
-            yield _Node((*node.samples, Sample(t, changes)), t, number, node.stir + stir)
+            yield _Node((*node.samples, Sample(t, changes)), t, number, node.activity + activity)
 
     def _sorted(self, place: int) -> list[tuple[int, dict[str, Value], Valuation]]:
         """The possible samples while the values at `place` are held, the fewest changes first."""
         held = self.held[place]
         brought = ((self._changes(one, held), one) for one in self.choices.valuations)
-        samples = [(_stir(changes), changes, one) for changes, one in brought if changes]
+        samples = [(_activity(changes), changes, one) for changes, one in brought if changes]
         return sorted(samples, key=itemgetter(0))
 
     def _number(self, held: Valuation) -> int:

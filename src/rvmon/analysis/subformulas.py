@@ -155,13 +155,13 @@ class TriggerParts:
             reads = frozenset(spec.signals.keys() & {*names_read(formula)})
             parts[formula] = _Part(formula, text, place, reads)
         self._options = [tuple(parts[formula] for formula in option) for option in options]
-        self._is_told = requirement.for_each is None and not is_end(requirement.trigger)
+        self._is_explained = requirement.for_each is None and not is_end(requirement.trigger)
 
     def miss_in(self, seen: RecordedTruths) -> str:
         """The sentence of `why_not_triggered`, from the truths of `question` over a recording."""
         if seen.begin is None:
             return "the recording has no sample"
-        if not self._is_told:
+        if not self._is_explained:
             return ""
         truths = seen.truths(self.question)
         misses = [_miss(parts, truths) for parts in self._options]

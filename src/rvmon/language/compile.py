@@ -13,7 +13,7 @@ from rvmon.errors import SpecError
 from rvmon.language.check import check
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.language.names import overridden, resolve, unused_names
-from rvmon.language.rules import Enough, Findings
+from rvmon.language.rules import Findings, TooManyErrors
 from rvmon.language.rules.syntax import empty_file, too_many
 from rvmon.language.syntax.items import ParsedSpec
 from rvmon.language.syntax.parse import load_files
@@ -79,7 +79,7 @@ def compilation(
     findings = Findings()
     checked: CheckedSpec | None = None
     files: Sequence[ParsedSpec] = ()
-    with suppress(Enough):
+    with suppress(TooManyErrors):
         files = load_files(source, directory, findings, read)
         files = overridden(files, constants, findings)
         resolved = resolve(files, findings)

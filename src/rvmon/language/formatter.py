@@ -36,7 +36,7 @@ def aligned(items: Sequence[Sequence[Piece]]) -> list[str]:
         cells = (
             [f"{listed:<{names}} {type_:<{types}}", f"{role:<{roles}}"] if type_ else [listed, role]
         )
-        cells += [stale, next((piece.behind for piece in pieces if piece.behind), "")]
+        cells += [stale, next((piece.comment_after for piece in pieces if piece.comment_after), "")]
         lines.append(
             "  ".join([f"{item:<{word}} {cells[0]}", *filter(str.strip, cells[1:])]).rstrip()
         )
@@ -203,8 +203,8 @@ class Piece(Struct, frozen=True):
 
     kind: str  # the terminal of the grammar
     text: str  # the canonical spelling
-    above: tuple[str, ...] = ()  # comments on lines of their own before it
-    behind: str = ""  # the comment at the end of its line, or empty
+    comments_before: tuple[str, ...] = ()  # comments on lines of their own before it
+    comment_after: str = ""  # the comment at the end of its line, or empty
     depth: int = 0  # the number of brackets around it
     opens_window: bool = False  # whether it is a round bracket that opens an interval
 
@@ -220,11 +220,11 @@ def pieces_of(text: str) -> tuple[list[Piece], str]:
         gap = text[place : token.start_pos]
         above = [comment.rstrip() for comment in _COMMENT.findall(gap)]
         if pieces and above and "\n" not in gap[: gap.index("#")]:
-            pieces[-1] = replace(pieces[-1], behind=above.pop(0))
+            pieces[-1] = replace(pieces[-1], comment_after=above.pop(0))
         # The grammar accepts `at end pass` and `at end: pass`; the second form is printed.
         if pieces and pieces[-1].kind == "AT_END" and token.type != "COLON":
-            colon = Piece("COLON", ":", behind=pieces[-1].behind)
-            pieces[-1:] = replace(pieces[-1], behind=""), colon
+            colon = Piece("COLON", ":", comment_after=pieces[-1].comment_after)
+            pieces[-1:] = replace(pieces[-1], comment_after=""), colon
         if token.type in _CLOSING:
             brackets.pop()
         elif token.type == "COMMA" and brackets and pieces[brackets[-1]].kind == "LPAR":
@@ -238,7 +238,7 @@ def pieces_of(text: str) -> tuple[list[Piece], str]:
     rest = text[place:]
     comment = re.match(r"[ \t]*(#[^\n]*)", rest)
     if comment:
-        pieces[-1] = replace(pieces[-1], behind=comment[1].rstrip())
+        pieces[-1] = replace(pieces[-1], comment_after=comment[1].rstrip())
         rest = rest[comment.end() :]
     return pieces, rest
 
@@ -275,10 +275,10 @@ def lines_of(pieces: Sequence[Piece], indent: int) -> list[str]:
     lines: list[str] = []
     step = indent
     for segment in _segments(pieces):
-        lines += [" " * step + comment for comment in segment[0].above]
+        lines += [" " * step + comment for comment in segment[0].comments_before]
         lines += _wrapped(segment, step)
-        if segment[-1].behind:
-            lines[-1] += f"  {segment[-1].behind}"
+        if segment[-1].comment_after:
+            lines[-1] += f"  {segment[-1].comment_after}"
         step = indent + 2
     return lines
 
@@ -311,7 +311,7 @@ def _segments(pieces: Sequence[Piece]) -> list[list[Piece]]:
     """
     segments = [[pieces[0]]]
     for left, right in pairwise(pieces):
-        if left.behind or right.above or _would_be_unit(left, right):
+        if left.comment_after or right.comments_before or _would_be_unit(left, right):
             segments.append([])
         segments[-1].append(right)
     return segments

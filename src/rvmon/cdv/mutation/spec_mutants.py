@@ -290,6 +290,6 @@ def _is_equivalent(spec: CheckedSpec, mutant: SpecMutant, together: Together) ->
     )
     return all(
         starts_with(together, other, subject)
-        and together.can_reach([other, subject], [0, 0], well=[0], failed=[1]) is False
+        and together.can_reach([other, subject], [0, 0], passing=[0], failing=[1]) is False
         for other, subject in ((before, after), (after, before))
     )

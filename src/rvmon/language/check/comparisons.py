@@ -9,7 +9,7 @@ from math import ceil
 from rvmon.diagnostics import Diagnostic, Span
 from rvmon.language.check import quantities
 from rvmon.language.check import scope as sc
-from rvmon.language.check.moving_windows import above, brought_alone, by_limits
+from rvmon.language.check.moving_windows import above, by_limits, isolated
 from rvmon.language.checked import formula as rv
 from rvmon.language.checked.arithmetic import NumericOp
 from rvmon.language.checked.names_read import names_in
@@ -33,8 +33,10 @@ def compared(operands: sc.Operands, node: Comparison, scope: sc.Scope) -> rv.For
     """
     sides = _sides(operands, node, scope)
     time = operands.table.time
-    formulas = quantities.spread(sides, node.span, lambda values: _compared(time, node, *values))
-    return quantities.decided(formulas, node.span)
+    formulas = quantities.for_each_outcome(
+        sides, node.span, lambda values: _compared(time, node, *values)
+    )
+    return quantities.joined(formulas, node.span)
 
 
 def _compared(time: TimeModel, node: Comparison, left: sc.Value, right: sc.Value) -> rv.Formula:
@@ -67,7 +69,7 @@ def _compared(time: TimeModel, node: Comparison, left: sc.Value, right: sc.Value
     if any(rv.fields_in(comparison.left, comparison.right)):
         raise Refusal(rules.limit_of_event(node.span))
     if time is TimeModel.HELD and any(window.moves for window in (*windows[0], *windows[1])):
-        return brought_alone(comparison, node.span)
+        return isolated(comparison, node.span)
     return comparison
 
 
@@ -79,8 +81,8 @@ def _windows_of(placed: quantities.Placed) -> tuple[rv.WindowValue, ...]:
 def _sides(operands: sc.Operands, node: Comparison, scope: sc.Scope) -> list[sc.Value]:
     """The values of both sides; a name is a label if the other side is a signal with that label."""
     for first, second in ((node.left, node.right), (node.right, node.left)):
-        name, place = operands.peeled(second, scope)
-        other, _ = operands.peeled(first, scope)
+        name, place = operands.unwrapped(second, scope)
+        other, _ = operands.unwrapped(first, scope)
         # An unknown name on the other side is not evaluated in search of a signal with labels.
         may_be_signal = not isinstance(other, Name) or operands.known(other.text, scope)
         if not isinstance(name, Name) or not may_be_signal:
@@ -135,7 +137,7 @@ def _bound(lone: sc.Lone, unit: Unit, limit: quantities.Placed, span: Span) -> r
         unit = parse_unit("s")
         whole = sc.Quantity(constant=Fraction(lone.of.window or 0, TICKS_PER_SECOND), unit=unit)
         limit = quantities.arithmetic(NumericOp.MUL, (limit, (whole, place)), span), place
-    return quantities.brought_to(unit, limit, span)
+    return quantities.converted(unit, limit, span)
 
 
 def _extreme(
@@ -200,7 +202,7 @@ def formula_of(value: sc.Value, span: Span) -> rv.Formula:
         case sc.Quantity(labels=labels):
             raise Refusal(rules.needs_formula(span, "a label" if labels else "a number"))
         case sc.Chosen(condition=condition, chosen=chosen, otherwise=otherwise):
-            return quantities.either(
+            return quantities.if_then_else(
                 condition, formula_of(chosen, span), formula_of(otherwise, span), span
             )
         case _:
@@ -246,7 +248,7 @@ def _quantities(
     return rv.Compare(op, first.node, second.node, span)
 
 
-def moved(op: NumericOp, values: Sequence[sc.Value]) -> sc.Now | sc.Moment | None:
+def time_shifted(op: NumericOp, values: Sequence[sc.Value]) -> sc.Now | sc.Moment | None:
     """The value of `now - t0`, `t0 + x` or `x + t0`; `None` for any other operation."""
     match op, values:
         case NumericOp.SUB, [sc.Now(since=None), sc.Moment(name=name, later=None)]:

@@ -7,10 +7,10 @@ from typing import ParamSpec, TypeVar, assert_never
 
 from rvmon.diagnostics import Diagnostic, Span
 from rvmon.language.check import scope as sc
-from rvmon.language.check.comparisons import compared, formula_of, moved, number_of
+from rvmon.language.check.comparisons import compared, formula_of, number_of, time_shifted
 from rvmon.language.check.function_calls import applied
 from rvmon.language.check.moving_windows import bound_of, bounded
-from rvmon.language.check.quantities import arithmetic, closed_interval, spread, ticks_of
+from rvmon.language.check.quantities import arithmetic, closed_interval, for_each_outcome, ticks_of
 from rvmon.language.checked import formula as rv
 from rvmon.language.checked.arithmetic import NumericOp
 from rvmon.language.checked.operators import Tense, Window
@@ -50,7 +50,7 @@ class Checker:
         """Record a finding.
 
         Raises:
-            Enough: there are too many.
+            TooManyErrors: there are too many.
         """
         self._findings.add(finding)
 
@@ -84,12 +84,12 @@ class Checker:
         """The result of an operation on numbers, or on choices between numbers."""
 
         def calculate(values: Sequence[sc.Value]) -> sc.Value:
-            if (instant := moved(op, values)) is not None:
+            if (instant := time_shifted(op, values)) is not None:
                 return instant
             pairs = zip(values, args, strict=True)
             return arithmetic(op, [(number_of(v, e.span), e.span) for v, e in pairs], span)
 
-        return spread(self.values(args, scope), span, calculate)
+        return for_each_outcome(self.values(args, scope), span, calculate)
 
     def values(self, expressions: tuple[ast.Expression, ...], scope: sc.Scope) -> list[sc.Value]:
         """The values that the expressions stand for.
@@ -262,7 +262,7 @@ class Checker:
         inner = scope.inside(dict(zip(parameters, closures, strict=True)))
         return self.values((declared.body,), inner)[0]
 
-    def peeled(
+    def unwrapped(
         self, expression: ast.Expression, scope: sc.Scope
     ) -> tuple[ast.Expression, sc.Scope]:
         """The expression without brackets, with macro parameters replaced by their arguments."""

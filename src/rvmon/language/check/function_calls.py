@@ -87,7 +87,7 @@ def _named(operands: Operands, call: Call, scope: Scope, function: Function) -> 
     It must be the name of a signal, or of an event if the function accepts one.
     """
     events = function.arguments[0] is Argument.SOURCE
-    name, inner = operands.peeled(call.args[0], scope)
+    name, inner = operands.unwrapped(call.args[0], scope)
     if isinstance(name, Name) and name.text not in inner.names:
         table = operands.table
         if name.text in table.signals or (events and name.text in table.events):

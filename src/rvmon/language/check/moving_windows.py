@@ -57,7 +57,7 @@ _INVERSE = {
 }
 
 
-def brought_alone(compared: rv.Compare, span: Span) -> rv.Formula:
+def isolated(compared: rv.Compare, span: Span) -> rv.Formula:
     """A comparison rearranged so that its moving window stands alone on the left.
 
     Operations around the window are inverted on the other side, the outermost first; each inverse

@@ -229,7 +229,9 @@ def _node(value: Quantity, unit: Unit, whole: bool, place: Span) -> rv.Numeric:
 MOST_OUTCOMES = 64  # the most numbers between which an expression may choose
 
 
-def spread(values: Sequence[Value], span: Span, make: Callable[[Sequence[Value]], Value]) -> Value:
+def for_each_outcome(
+    values: Sequence[Value], span: Span, make: Callable[[Sequence[Value]], Value]
+) -> Value:
     """Apply `make` to values; for values that are choices, to each combination of outcomes.
 
     Raises:
@@ -237,7 +239,7 @@ def spread(values: Sequence[Value], span: Span, make: Callable[[Sequence[Value]]
     """
     if prod(map(_outcomes, values)) > MOST_OUTCOMES:
         raise Refusal(rules.many_outcomes(span, MOST_OUTCOMES))
-    return _spread(values, make)
+    return _per_outcome(values, make)
 
 
 def _outcomes(value: Value) -> int:
@@ -246,27 +248,28 @@ def _outcomes(value: Value) -> int:
     return 1
 
 
-def _spread(values: Sequence[Value], make: Callable[[Sequence[Value]], Value]) -> Value:
+def _per_outcome(values: Sequence[Value], make: Callable[[Sequence[Value]], Value]) -> Value:
     for number, value in enumerate(values):
         if isinstance(value, Chosen):
             before, behind = values[:number], values[number + 1 :]
             sides = [
-                _spread((*before, side, *behind), make) for side in (value.chosen, value.otherwise)
+                _per_outcome((*before, side, *behind), make)
+                for side in (value.chosen, value.otherwise)
             ]
             return Chosen(value.condition, *sides)
     return make(values)
 
 
-def decided(value: Value, span: Span) -> rv.Formula:
+def joined(value: Value, span: Span) -> rv.Formula:
     """A choice between formulas, as one formula."""
     if isinstance(value, Chosen):
-        chosen, otherwise = decided(value.chosen, span), decided(value.otherwise, span)
-        return either(value.condition, chosen, otherwise, span)
+        chosen, otherwise = joined(value.chosen, span), joined(value.otherwise, span)
+        return if_then_else(value.condition, chosen, otherwise, span)
     assert not isinstance(value, Quantity | TimeValue), "it was made of formulas"
     return value
 
 
-def either(
+def if_then_else(
     condition: rv.Formula, chosen: rv.Formula, otherwise: rv.Formula, span: Span
 ) -> rv.Formula:
     """The formula `if φ then ψ else χ`."""
@@ -332,10 +335,10 @@ def seconds_of(duration: Placed) -> rv.Numeric:
     """
     if duration[0].constant is not None:
         ticks_of(*duration)
-    return brought_to(parse_unit("s"), duration, duration[1])
+    return converted(parse_unit("s"), duration, duration[1])
 
 
-def brought_to(unit: Unit, placed: Placed, span: Span) -> rv.Numeric:
+def converted(unit: Unit, placed: Placed, span: Span) -> rv.Numeric:
     """A number converted to a unit as the right side of a comparison is.
 
     Raises:

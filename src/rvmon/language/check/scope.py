@@ -218,5 +218,5 @@ class Operands(Protocol):
     def known(self, name: str, scope: Scope) -> bool:
         """Whether a name stands for anything but a label."""
 
-    def peeled(self, expression: Expression, scope: Scope) -> tuple[Expression, Scope]:
+    def unwrapped(self, expression: Expression, scope: Scope) -> tuple[Expression, Scope]:
         """An operand without brackets, with macro parameters replaced by their arguments."""

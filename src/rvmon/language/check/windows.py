@@ -49,13 +49,13 @@ class _Window(Struct, frozen=True):
 
 def _window(operands: Operands, call: Call, scope: Scope) -> _Window:
     """The window of a call: the last D, `last(n, x)`, since the trigger, or since the start."""
-    of, inner = operands.peeled(call.args[0], scope)
+    of, inner = operands.unwrapped(call.args[0], scope)
     window = _Window(call.args[0], scope)
     match of:
         case Call(function=function, args=(count, x)) if function.text == LAST:
             window = _Window(x, inner, most=_count(operands, count, inner))
         case Infix(op=rv.BinaryOp.SINCE, left=left, right=right, window=None):
-            name, place = operands.peeled(right, inner)
+            name, place = operands.unwrapped(right, inner)
             if (
                 isinstance(name, Name)
                 and name.text == TRIGGER

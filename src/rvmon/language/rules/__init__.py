@@ -68,7 +68,7 @@ class Breach(Struct, frozen=True):
 MOST = 100  # after this many errors the check stops; of warnings, further ones are dropped
 
 
-class Enough(Exception):  # noqa: N818 - never leaves this package
+class TooManyErrors(Exception):  # noqa: N818 - never leaves this package
     """Raised to stop the check when there are too many errors."""
 
 
@@ -84,7 +84,7 @@ class Findings(Struct):
         """Add a finding, unless there is one with the same code at the same place.
 
         Raises:
-            Enough: there are too many errors.
+            TooManyErrors: there are too many errors.
         """
         place = finding.spans[0].span if finding.spans else None
         key = (finding.code, place and (place.source.name, place.start, place.end))
@@ -94,7 +94,7 @@ class Findings(Struct):
         if self._counts[finding.severity] >= MOST:
             self.more = True
             if finding.severity is Severity.ERROR:
-                raise Enough
+                raise TooManyErrors
             return
         self._seen.add(key)
         self._counts[finding.severity] += 1
