@@ -21,7 +21,6 @@ from rvmon.trace.schema import Kind
 
 
 @cache
-@cache
 def _classes() -> Mapping[str, type]:
     """The classes of checked specifications and their warnings, by name."""
     classes: list[type] = [Measured, NumericOp, UnaryOp, BinaryOp, Interval, Kind]
