@@ -36,7 +36,7 @@ def read(
         says: uint8[columns, rows], to be filled.
         lines: int64[rows], to be filled with the line on which each row ends.
         odd: int64[n, 4], to be filled with row, column, start and end of cells left to Python.
-        labels: int64[n, 3], to be filled with column, start and end of each label.
+        labels: int64[n, 4], to be filled with column, start, end and sort of each label.
         table: int32[2 n], zeros; a hash table of labels.
 
     Returns:

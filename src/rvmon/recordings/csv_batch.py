@@ -42,6 +42,8 @@ _LABELS = 2048
 
 _MOST_LABELS = 1 << 16  # room for this many labels or more does not grow
 
+_SORTS = 5  # labels that a call may note of a column before it takes a row
+
 
 def csv_batches(
     text: CsvText[Found], layout: Layout, ignoring: frozenset[str]
@@ -99,7 +101,7 @@ class _Reader:
         self._absent = None if no_update is None else str(no_update).encode()
         self._row_bytes = 2.0 * len(layout.header)
         has_labels = any(column.kind is Kind.LABEL for column in layout.columns)
-        self._labels = max(_LABELS if has_labels else 0, 1 + len(layout.columns))
+        self._labels = max(_LABELS if has_labels else 0, _SORTS * (1 + len(layout.columns)))
 
     def read(self, text: bytes, start: int = 0, *, is_ended: bool = False) -> Found:
         """Read rows of a text from offset `start` on, as many as one call can.
@@ -113,7 +115,7 @@ class _Reader:
         says = np.empty((columns, room), np.uint8)
         lines = np.empty(room, np.int64)
         odd = np.empty((max(_ODD, columns), 4), np.int64)
-        labels = np.empty((self._labels, 3), np.int64)
+        labels = np.empty((self._labels, 4), np.int64)
         table = np.zeros(2 * len(labels), np.int32)
         ended, rows, at, end, passed, odd_count, label_count = native_csv.read(
             text, start, is_ended, csv.field_size_limit(), *self.layout.numbers, self._absent,
@@ -136,7 +138,7 @@ class _Reader:
                 break
         batch = None
         if rows:
-            words = [(of, _cell(text, *ends)) for of, *ends in labels[:label_count].tolist()]
+            words = [(of, _cell(text, *ends)) for of, *ends, _ in labels[:label_count].tolist()]
             cells = {
                 column: self._cells(column, numbers[place, :rows], says[place, :rows], words, place)
                 for place, column in enumerate(self.layout.columns, 1)

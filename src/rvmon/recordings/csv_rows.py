@@ -18,9 +18,10 @@ from rvmon.trace.sample import Scalar, Value
 from rvmon.trace.schema import Gaps, Kind, Schema, Stamps
 from rvmon.trace.stamps import stamps_among, ticks_of_cell
 
+# As `csv.h` numbers them.
 _KINDS = {Kind.BOOL: 0, Kind.INT: 1, Kind.REAL: 2, Kind.LABEL: 3}
-
-_STAMPS = {"iso": 4, "s": 14, "ms": 11, "us": 8, "ns": 5}  # by unit, the number that `csv.h` uses
+_ANY = 4
+_STAMPS = {"iso": 5, "s": 15, "ms": 12, "us": 9, "ns": 6}  # by unit
 
 
 class Column(Struct, frozen=True):
@@ -47,6 +48,9 @@ class Layout(Struct, frozen=True, dict=True):
     events: tuple[Column, ...]  # columns of events and of their payload fields
     ignored: tuple[str, ...]  # names of the columns that the spec does not declare
     gaps: Gaps  # values that mean "no update"
+    # whether cells are read before their kinds are known: as labels, of which one number may stand
+    # for all numbers of its sort (0, 1, whole, other); a last line without an end counts, too
+    is_look: bool = False
 
     @cached_property
     def columns(self) -> tuple[Column, ...]:
@@ -75,7 +79,8 @@ class Layout(Struct, frozen=True, dict=True):
         places = {column.index: place for place, column in enumerate(self.columns, 1)}
         places[self.time] = 0
         slots = [places.get(index, -1) for index in range(len(self.header))]
-        kinds = [_STAMPS[self.stamps.unit], *(_KINDS[column.kind] for column in self.columns)]
+        own = [_ANY if self.is_look else _KINDS[column.kind] for column in self.columns]
+        kinds = [_STAMPS[self.stamps.unit], *own]
         return pack(f"={len(slots)}i", *slots), pack(f"={len(kinds)}i", *kinds)
 
 
@@ -285,8 +290,11 @@ def unended(
         lost = frozenset(
             column.name
             for column in layout.columns
-            if layout.time == last
-            or (column.index == last and (column.kind is not Kind.BOOL or not row[last]))
+            if not layout.is_look
+            and (
+                layout.time == last
+                or (column.index == last and (column.kind is not Kind.BOOL or not row[last]))
+            )
         )
         for name in sorted(lost & ignoring):
             raise TraceError(

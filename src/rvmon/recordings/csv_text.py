@@ -10,6 +10,7 @@ from collections import deque
 from collections.abc import Callable, Generator, Iterator
 from typing import TYPE_CHECKING, BinaryIO, Generic, TypeVar
 
+from rvmon.errors import TraceError
 from rvmon.native import extension
 from rvmon.native.sources import CSV_FOLDER
 from rvmon.recordings import places
@@ -113,6 +114,13 @@ class CsvText(Generic[_Found]):
                 looked_at = max(0, len(self.rest) - self.start - 1)
                 self.read_on()
 
+    def header(self) -> list[str]:
+        """Take the header."""
+        try:
+            return next(split_lines(self.lines()))[1]
+        except StopIteration:
+            raise TraceError("is empty: expected a header with a time column `t`") from None
+
     def cut(self, end: int) -> str:
         """Take the text up to an offset."""
         taken = self.rest[self.start : end].decode()
@@ -143,14 +151,20 @@ def stretches(first: bytes, file: BinaryIO) -> Iterator[bytes]:
     [b't,p\n0,1\n1,']
     """
     decoder = getincrementaldecoder("utf-8")()
-    tail, piece, is_split = b"", first, False
+    tail, piece = b"", first
+    passed = split = 0  # bytes before this piece, and those of them that begin a split character
     while piece:
         # Most texts are ASCII, which needs no decoder. A character may be split between two blocks.
-        if is_split or not piece.isascii():
-            decoder.decode(piece)
-            is_split = bool(decoder.getstate()[0])
+        if split or not piece.isascii():
+            try:
+                decoder.decode(piece)
+            except UnicodeDecodeError as error:
+                error.start += passed - split
+                raise
+            split = len(decoder.getstate()[0])
+        passed += len(piece)
         is_last = len(piece) < places.BLOCK
-        if is_last and not is_split:
+        if is_last and not split:
             yield tail + piece
             return
         whole = piece.rfind(b"\n") + 1 or len(piece)

@@ -51,10 +51,24 @@ def parquet_file(path: str | Path) -> Any:
 
 
 def parquet_cells(path: str | Path) -> Iterator[Mapping[str, list[Any]]]:
-    """Yield the cells of all columns by name, at most `ROWS` rows at a time."""
+    """Yield the cells of all columns by name, at most `ROWS` rows at a time.
+
+    One number may stand for all numbers of its column.
+    """
     names = list(parquet_file(path).schema_arrow.names)
     for arrays in parquet_batches(path, names):
-        yield dict(zip(names, map(arrow_cells, arrays), strict=True))
+        yield dict(zip(names, map(_different, arrays), strict=True))
+
+
+def _different(column: Any) -> list[Any]:
+    from pyarrow import types
+
+    type_ = column.type
+    if types.is_boolean(type_) or types.is_signed_integer(type_) or types.is_floating(type_):
+        column = column.drop_null()[:1]
+    elif types.is_string(type_) or types.is_dictionary(type_):
+        column = column.unique()
+    return arrow_cells(column)
 
 
 def parquet_batches(path: str | Path, names: list[str]) -> Iterator[list[Any]]:

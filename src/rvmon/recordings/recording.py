@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, BinaryIO, TypeVar
 from rvmon.errors import TraceError
 from rvmon.recordings import ARRAYS, FORMATS, MESSAGE_FORMS, form_of_folder, places
 from rvmon.recordings.csv_dialect import bare_names, opened_as_csv
-from rvmon.recordings.csv_rows import Layout, read_layout, split_lines
+from rvmon.recordings.csv_rows import Layout, read_layout
 from rvmon.recordings.csv_text import CsvText
 from rvmon.recordings.joined import Joined, schemas_of
 from rvmon.recordings.rows import LOOKED_AT, Row, Rows, doubt_unit
@@ -303,11 +303,7 @@ class FileRecording:
         if found is not None:
             text.cut(end)
             return found
-        try:
-            _, header = next(split_lines(text.lines()))
-        except StopIteration:
-            raise TraceError("is empty: expected a header with a time column `t`") from None
-        found = read_layout(*bare_names(header, self._schema))
+        found = read_layout(*bare_names(text.header(), self._schema))
         known.clear()
         if text.rest is source:  # else the header went on beyond the block that was at hand
             known[source[start : text.start]] = found

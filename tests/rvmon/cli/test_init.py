@@ -46,6 +46,12 @@ def test_what_is_written_runs_at_once(name, put, says):
     assert set(verdicts) <= {"P", "I"}
 
 
+@pytest.mark.parametrize("cells", [("0.0", "-0.0"), ("-0.0", "0.0")])
+def test_minus_zero_is_zero(cells, put, says):
+    put("zero.csv", "t,x\n" + "".join(f"{t},{cell}\n" for t, cell in enumerate([*cells, "2.5"])))
+    assert "it was between 0 and 2.5" in says(0, "init", "zero.csv", "-o", "-").out
+
+
 @pytest.mark.slow
 def test_random_recordings_run_at_once(tmp_path):
     rng = random.Random(5)

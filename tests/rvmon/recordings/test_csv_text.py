@@ -36,9 +36,19 @@ def test_what_is_no_text_is_told_in_its_turn(written):
     with open(written, "ab") as file:
         file.write(b"1000,\xff\n")
     found = deque()
-    with pytest.raises(rvmon.TraceError, match="not UTF-8 text"):
+    place = written.stat().st_size - 2
+    with pytest.raises(rvmon.TraceError, match=f"not UTF-8 text .*at byte {place}\\)"):
         found.extend(SPEC.recording(written))
     assert len(found) > 900
+
+
+@pytest.mark.parametrize("block", range(5, 12))
+def test_the_place_of_what_is_no_text_is_that_in_the_file(block, tmp_path, monkeypatch):
+    monkeypatch.setattr(places, "BLOCK", block)
+    path = tmp_path / "a.csv"
+    path.write_bytes(b"t,x,\xc3\xbc\n0,1,\xe2\x82\xac\n1,2,\xe2\x82!\n")
+    with pytest.raises(rvmon.TraceError, match=r"at byte 19\)"):
+        list(SPEC.recording(path))
 
 
 def test_who_stops_reading_leaves_no_thread(written):

@@ -20,13 +20,12 @@ static csv_cell trimmed(csv_cell c)
     return c;
 }
 
-/* The index of a label in `labels`, where it is added if it is new; -1: there is no room. */
-static int64_t place_of(csv_reader *r, int32_t column, csv_cell c)
+int64_t csv_label(csv_reader *r, int32_t column, csv_sort sort, csv_cell c)
 {
     const int64_t start = c.from - r->text;
     const int64_t end = c.is_doubled ? ~(int64_t)(c.to - r->text) : c.to - r->text;
-    const size_t size = (size_t)(c.to - c.from);
-    uint32_t hash = 2166136261u ^ (uint32_t)column;
+    const size_t size = (sort == CSV_TEXT) ? (size_t)(c.to - c.from) : 0; /* that matters */
+    uint32_t hash = (2166136261u ^ (uint32_t)column) + (uint32_t)sort;
     uint32_t slot;
     size_t i;
     for (i = 0; i < size; i++) {
@@ -34,22 +33,25 @@ static int64_t place_of(csv_reader *r, int32_t column, csv_cell c)
     }
     for (slot = hash % (2 * (uint32_t)r->label_room);; slot = (slot + 1) % (2 * (uint32_t)r->label_room)) {
         const int32_t found = r->table[slot] - 1;
-        const int64_t *own = &r->labels[3 * (int64_t)found];
+        const int64_t *own = &r->labels[4 * (int64_t)found];
         if (found < 0) {
             break;
         }
-        if ((own[0] == column) && ((own[2] < 0) == c.is_doubled)
-            && ((size_t)(((own[2] < 0) ? ~own[2] : own[2]) - own[1]) == size)
-            && (memcmp(r->text + own[1], c.from, size) == 0)) {
+        if ((own[0] == column) && (own[3] == (int64_t)sort)
+            && ((sort != CSV_TEXT)
+                || (((own[2] < 0) == c.is_doubled)
+                    && ((size_t)(((own[2] < 0) ? ~own[2] : own[2]) - own[1]) == size)
+                    && (memcmp(r->text + own[1], c.from, size) == 0)))) {
             return found;
         }
     }
     if (r->label_count == r->label_room) {
         return -1;
     }
-    r->labels[3 * r->label_count] = column;
-    r->labels[3 * r->label_count + 1] = start;
-    r->labels[3 * r->label_count + 2] = end;
+    r->labels[4 * r->label_count] = column;
+    r->labels[4 * r->label_count + 1] = start;
+    r->labels[4 * r->label_count + 2] = end;
+    r->labels[4 * r->label_count + 3] = (int64_t)sort;
     r->label_count++;
     r->table[slot] = (int32_t)r->label_count;
     return r->label_count - 1;
@@ -65,9 +67,10 @@ bool csv_take(csv_reader *r, int32_t column, csv_cell c)
     made->whole = 0;
     if ((kind < CSV_DATE) && ((c.from == c.to) || csv_is_absent(r, c))) {
         says = CSV_NO_UPDATE;
-    } else if (kind == CSV_LABEL) {
+    } else if ((kind == CSV_LABEL) || (kind == CSV_ANY)) {
+        const bool is_text = (kind == CSV_LABEL) || c.is_doubled;
         says = CSV_YES;
-        made->whole = place_of(r, column, c);
+        made->whole = csv_label(r, column, is_text ? CSV_TEXT : csv_sort_of(c.from, c.to), c);
         if (made->whole < 0) {
             return false;
         }

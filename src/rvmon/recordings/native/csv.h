@@ -11,9 +11,15 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Kinds of columns. Stamps have CSV_STAMP plus the decimal places from their unit to a tick: 9 for
-   seconds, 0 for ticks. */
-enum { CSV_BOOL, CSV_INT, CSV_REAL, CSV_LABEL, CSV_DATE, CSV_STAMP };
+/* Kinds of columns. In CSV_ANY, whose kind is not known yet, cells are labels, and one number stands
+   for all numbers of its sort. Stamps have CSV_STAMP plus the decimal places from their unit to a
+   tick: 9 for seconds, 0 for ticks. */
+enum { CSV_BOOL, CSV_INT, CSV_REAL, CSV_LABEL, CSV_ANY, CSV_DATE, CSV_STAMP };
+
+/* Sorts of cells of CSV_ANY: 0, 1, another whole number of up to 18 digits, another number; CSV_TEXT
+   is everything else. */
+typedef enum { CSV_TEXT, CSV_ZERO, CSV_ONE, CSV_WHOLE, CSV_NUMBER } csv_sort;
+#define CSV_SORTS 5
 
 /* Entries of cells, as in rvmon.recordings.batch; Python reads cells that are CSV_ODD. */
 enum { CSV_UNKNOWN = 1, CSV_YES = 2, CSV_ODD = 3, CSV_NO_UPDATE = 255 };
@@ -37,7 +43,7 @@ typedef struct {
     int32_t width;        /* cells of a row */
     const int32_t *kinds; /* by column; column 0 is the stamp */
     int32_t columns;
-    const char *absent;   /* the text that means "no update"; NULL: none */
+    const char *absent;   /* the text that means "no update"; NULL: none, as with CSV_ANY */
     int64_t absent_size;
     csv_slow slow;
     void *taken; /* argument of `slow` */
@@ -48,7 +54,7 @@ typedef struct {
     int64_t *lines;      /* by row, the line on which it ends, counted from 1 */
     int64_t *odd;        /* row, column, start and end of each odd cell */
     int64_t odd_room;
-    int64_t *labels;     /* column, start and end of each; ~end: quotes in it are doubled */
+    int64_t *labels;     /* column, start, end and sort of each; ~end: quotes in it are doubled */
     int64_t label_room;
     int32_t *table; /* hash table of label indices plus 1; 2 * label_room, all 0 at first */
 
@@ -84,6 +90,12 @@ int64_t csv_plain(csv_reader *r, const char *lines_end);
 
 /* Store a cell of the next row; false if there is no room for an odd cell or a label. */
 bool csv_take(csv_reader *r, int32_t column, csv_cell c);
+
+/* The index of a label in `labels`, where it is added if it is new; -1: there is no room. */
+int64_t csv_label(csv_reader *r, int32_t column, csv_sort sort, csv_cell c);
+
+/* The sort of a trimmed cell. */
+csv_sort csv_sort_of(const char *from, const char *to);
 
 /* Find the end of a quoted cell whose text starts at `at`, and count the lines in it; returns the
  * place after the closing quote, NULL if the text has none. */

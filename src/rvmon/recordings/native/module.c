@@ -95,7 +95,7 @@ static PyObject *csv_read_rows(PyObject *module, PyObject *args)
     r.odd = b[ODD].buf;
     r.odd_room = b[ODD].len / 32;
     r.labels = b[LABELS].buf;
-    r.label_room = b[LABELS].len / 24;
+    r.label_room = b[LABELS].len / 32;
     r.table = b[TABLE].buf;
     if (fit(&r, &b[NUMBERS], &b[SAYS], &b[TABLE])) {
         const csv_end ended = read_unlocked(&r);

@@ -118,6 +118,13 @@ static inline csv_cell cell_at(const stretch *s, const int32_t *ends)
     return made;
 }
 
+static void leave(const column *c, stretch *s, int64_t row)
+{
+    c->says[row] = 0;
+    s->is_left[row] = true;
+    s->some_are_left = true;
+}
+
 /* Read a cell that is no short number: another form of number, or an empty cell. Any other cell is
  * left over, with the entry 0. */
 static void read_other(const csv_reader *r, const column *c, stretch *s, int64_t row)
@@ -133,10 +140,9 @@ static void read_other(const csv_reader *r, const column *c, stretch *s, int64_t
                && (decimal_at(found.from, r->text + r->size, &d) == found.to)) {
         says = number_of(r, c->kind, &d, found.from, found.to, made);
     }
-    c->says[row] = (uint8_t)((says == CSV_ODD) ? 0 : says);
+    c->says[row] = (uint8_t)says;
     if (says == CSV_ODD) {
-        s->is_left[row] = true;
-        s->some_are_left = true;
+        leave(c, s, row);
     }
 }
 
@@ -192,7 +198,25 @@ static void read_bools(const csv_reader *r, const column *c, stretch *s)
     }
 }
 
-static void read_column(const csv_reader *r, const column *c, stretch *s)
+/* Read cells of CSV_ANY; texts are left over. */
+static void read_sorts(csv_reader *r, const column *c, int32_t slot, stretch *s)
+{
+    int64_t labels[CSV_SORTS] = {-1, -1, -1, -1, -1};
+    int64_t row;
+    for (row = 0; row < s->rows; row++) {
+        const csv_cell found = cell_at(s, &c->ends[row * c->stride]);
+        const csv_sort sort = csv_sort_of(found.from, found.to);
+        if ((sort != CSV_TEXT) && (labels[sort] < 0)) {
+            labels[sort] = csv_label(r, slot, sort, found);
+        }
+        c->numbers[row].whole = labels[sort];
+        if (labels[sort] < 0) {
+            leave(c, s, row);
+        }
+    }
+}
+
+static void read_column(csv_reader *r, const column *c, int32_t slot, stretch *s)
 {
     int64_t row;
     if ((c->kind == CSV_LABEL) || (c->kind == CSV_DATE)) {
@@ -212,6 +236,7 @@ static void read_column(const csv_reader *r, const column *c, stretch *s)
     case CSV_BOOL: read_bools(r, c, s); break;
     case CSV_INT: read_wholes(r, c, 0, s); break;
     case CSV_REAL: read_reals(r, c, s); break;
+    case CSV_ANY: read_sorts(r, c, slot, s); break;
     default: read_wholes(r, c, c->kind - CSV_STAMP, s); break;
     }
 }
@@ -261,7 +286,7 @@ int64_t csv_plain(csv_reader *r, const char *lines_end)
         if (slot >= 0) {
             const column c = {r->kinds[slot], &r->numbers[put], &r->says[put], &s.places[place],
                               (int64_t)r->width + 1};
-            read_column(r, &c, &s);
+            read_column(r, &c, slot, &s);
         }
     }
     for (row = 0; row < s.rows; row++) {

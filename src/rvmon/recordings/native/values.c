@@ -159,6 +159,18 @@ static int truth_of(const char *from, const char *to, csv_number *made)
     return CSV_ODD;
 }
 
+csv_sort csv_sort_of(const char *from, const char *to)
+{
+    decimal d;
+    if (decimal_at(from, to, &d) != to) {
+        return CSV_TEXT;
+    }
+    if ((to - from == 1) && (d.mantissa <= 1)) {
+        return (d.mantissa == 0) ? CSV_ZERO : CSV_ONE;
+    }
+    return (d.is_whole && (to - from - (is_digit(*from) ? 0 : 1) <= 18)) ? CSV_WHOLE : CSV_NUMBER;
+}
+
 int csv_value(const csv_reader *r, int32_t kind, const char *from, const char *to, csv_number *made)
 {
     decimal d;

@@ -22,9 +22,7 @@ MOST_LABELS = 16  # a text column with more values than this is left out
 _NUMBER = re.compile(
     r"[+-]?(?:\d++\.?+\d*+|\.\d++)(?:e[+-]?\d++)?+|[+-]?(?:nan|inf(?:inity)?)", re.IGNORECASE
 )
-_NUMBERS = re.compile(rf"(?:(?:{_NUMBER.pattern})(?:\n|\Z))+", re.IGNORECASE)
 _WHOLE = re.compile(r"[+-]?\d{1,18}", re.ASCII)
-_WHOLES = re.compile(rf"(?:{_WHOLE.pattern}(?:\n|\Z))+", re.ASCII)
 
 
 class SeenValues:
@@ -55,16 +53,7 @@ class SeenValues:
 
     def add_texts(self, cells: Iterable[str]) -> None:
         """Take cells of CSV; empty cells are ignored."""
-        different = dict.fromkeys(cells)
-        different.pop("", None)
-        # If the name is a number with many values, further numbers change nothing. One pattern for
-        # all cells is faster than reading them one by one.
-        known = _NUMBERS if Kind.REAL in self.kinds else _WHOLES if Kind.INT in self.kinds else None
-        if known is not None and len(self.labels) > MOST_LABELS:
-            lines = "\n".join(different)
-            if lines.count("\n") == len(different) - 1 and known.fullmatch(lines):
-                return
-        for cell in different:
+        for cell in filter(None, cells):
             self._add_text(cell)
 
     def _add_text(self, cell: str) -> None:

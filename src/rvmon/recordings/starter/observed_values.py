@@ -93,9 +93,12 @@ class Course:
         self._reach(int(times[-1]))
         places = (times - self.start) // self.length
         self._updates += np.bincount(places, minlength=MOST)
-        drawn = np.isfinite(numbers)
-        np.minimum.at(self._lows, places[drawn], numbers[drawn])
-        np.maximum.at(self._highs, places[drawn], numbers[drawn])
+        firsts = np.flatnonzero(np.diff(places, prepend=-1))
+        drawn, places = np.isfinite(numbers), places[firsts]
+        lows = np.minimum.reduceat(np.where(drawn, numbers, inf), firsts)
+        highs = np.maximum.reduceat(np.where(drawn, numbers, -inf), firsts)
+        self._lows[places] = np.minimum(self._lows[places], lows)
+        self._highs[places] = np.maximum(self._highs[places], highs)
 
     def _reach(self, t: int) -> None:
         """Lengthen the stretches until they cover an instant."""
@@ -218,7 +221,7 @@ class Column(Struct):
             case Kind.BOOL:
                 self._truths(times, values.astype(np.bool_))
             case Kind.INT | Kind.REAL if len(values):
-                low, high = values.min().item(), values.max().item()
+                low, high = values.min().item() + 0, values.max().item() + 0  # -0 is 0
                 self.low = low if self.low is None else min(self.low, low)
                 self.high = high if self.high is None else max(self.high, high)
             case _:

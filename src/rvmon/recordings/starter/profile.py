@@ -6,7 +6,6 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from io import TextIOWrapper
-from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -17,8 +16,10 @@ from rvmon.errors import TimeOrderError, TraceError
 from rvmon.recordings import MESSAGE_FORMS
 from rvmon.recordings.batch import NO_UPDATE, UNKNOWN, YES, Batch, Cells, NotPlainError
 from rvmon.recordings.cells import cells_of_values
-from rvmon.recordings.csv_dialect import name_and_unit, opened_as_csv
-from rvmon.recordings.csv_rows import split_lines
+from rvmon.recordings.csv_batch import Found, csv_batches
+from rvmon.recordings.csv_dialect import bare_names, name_and_unit, opened_as_csv
+from rvmon.recordings.csv_rows import read_layout
+from rvmon.recordings.csv_text import CsvText
 from rvmon.recordings.joined import topics_of
 from rvmon.recordings.places import bounded_lines, files_of, local_path, named_errors, opened
 from rvmon.recordings.recording import JOINED, FileRecording, format_of, messages_of
@@ -43,7 +44,7 @@ if TYPE_CHECKING:
 RARE = 0.2
 """A JSON object under a key of fewer lines than this share is taken for the payload of an event."""
 
-AT_ONCE = 8192  # rows, or samples, of which the columns are looked at together
+AT_ONCE = 8192  # samples of which the columns are looked at together
 
 Recorded = tuple["NDArray[np.int64]", Mapping[str, Updates]]
 """The instants of some samples, and of each name its updates there."""
@@ -59,10 +60,10 @@ def shapes_of(path: str, stamps: Stamps | None = None) -> Shapes:
     with named_errors(path):
         if form == "parquet":
             return _of_parquet(path, stamps)
-        source = opened_as_csv(path, stamps) if form == "csv" else opened(path)
-        with source as (plain, _), TextIOWrapper(plain, "utf-8-sig", newline="") as text:
-            look = _of_csv if form == "csv" else _of_json
-            return look(bounded_lines(text), stamps)
+        if form == "csv":
+            return _of_csv(path, stamps)
+        with opened(path) as (plain, _), TextIOWrapper(plain, "utf-8-sig", newline="") as text:
+            return _of_json(bounded_lines(text), stamps)
 
 
 def _of_files(paths: Sequence[str], stamps: Stamps | None) -> Shapes:
@@ -78,24 +79,27 @@ def _of_files(paths: Sequence[str], stamps: Stamps | None) -> Shapes:
     return Shapes(declared, left_out)
 
 
-def _of_csv(text: Iterable[str], stamps: Stamps | None) -> Shapes:
-    rows = split_lines(text)
-    try:
-        _, header = next(rows)
-    except StopIteration:
-        raise TraceError("is empty: expected a header with a time column `t`") from None
-    named = [name_and_unit(column) for column in header]
-    names = [
-        column if name in header else name for (name, _), column in zip(named, header, strict=True)
-    ]
-    if stamps is None:
-        stamps_among(names, Schema({}, {}))
-    columns = [SeenValues() for _ in header]
-    while some := [row for _, row in islice(rows, AT_ONCE)]:
-        for place, seen in enumerate(columns):
-            seen.add_texts(row[place] for row in some if place < len(row))
-    found = shapes_seen(_without_time(dict(zip(names, columns, strict=True)), stamps))
-    units = dict(named)
+def _of_csv(path: str, stamps: Stamps | None) -> Shapes:
+    with opened_as_csv(path, stamps) as (plain, _):
+        text: CsvText[Found] = CsvText(plain)
+        header = text.header()
+        others = [name for name in header if stamps is None or name != stamps.column]
+        possible = [*others, *(name_and_unit(name)[0] for name in others)]
+        schema = Schema(dict.fromkeys(possible, Kind.LABEL), {}, stamps=stamps)
+        names, schema = bare_names(header, schema)
+        layout = replace(read_layout(names, schema), is_look=True)
+        seen = {column.name: SeenValues() for column in layout.columns}
+        for piece in csv_batches(text, layout, frozenset()):
+            if isinstance(piece, Batch):
+                for name, cells in piece.signals.items():
+                    seen[name].add_texts(cells.labels or ())
+                continue
+            for _, _, values, *_ in piece:
+                for name, value in values.items():
+                    seen[name].add_texts([str(value)])
+    found = shapes_seen(seen)
+    named = zip(names, map(name_and_unit, header), strict=True)
+    units = {name: unit for name, (bare, unit) in named if name == bare}
     declared = {
         name: replace(shape, unit=units[name] if _is_measured(shape, units.get(name, "")) else "")
         for name, shape in found.declared.items()

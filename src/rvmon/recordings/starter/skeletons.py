@@ -276,7 +276,7 @@ def _remarks(column: Column) -> Iterator[str]:
             yield "a guess: true in single samples"
         return
     if column.low is not None and column.high is not None:
-        low, high = f"{column.low + 0:.6g}", f"{column.high + 0:.6g}"
+        low, high = f"{column.low:.6g}", f"{column.high:.6g}"
         yield f"always {low}" if column.low == column.high else f"{low} … {high}"
     if column.rate:
         gap = format_duration(column.longest_gap)
