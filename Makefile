@@ -2,10 +2,10 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-# What Python makes of files is kept, whatever is the custom here: else each program that tests start makes it anew.
+# Write .pyc files even if the environment forbids it: otherwise each program that tests start compiles all modules again.
 TESTED := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n auto --dist worksteal
 
-# What the native code is built from: where one of these changed, it is built anew.
+# Sources of the native code: it is built again when one of them changes.
 CORE := $(wildcard src/rvmon/core/native/*.[ch] src/rvmon/core/native/*/*.[ch] src/rvmon/models/native/*.[ch] src/rvmon/recordings/native/*.[ch]) src/rvmon/native/sources.py hatch_build.py
 WARNINGS := -Wall -Wextra -Wconversion -Wshadow -pedantic -Werror
 
@@ -23,7 +23,7 @@ core: | $(BIN)/python  ## compile the native code in place, 6 seconds; warnings 
 test: $(VENV)/.dev  ## run all tests, 5 minutes on 2 cores; ends with the seconds of each folder
 	@$(TESTED)
 
-quick: $(VENV)/.dev  ## run the tests that need no compiler, browser, robot or patience, 25 seconds on 2 cores
+quick: $(VENV)/.dev  ## run the tests that need no compiler, browser or robot and are fast, 25 seconds on 2 cores
 	@$(TESTED) -m "not (browser or campaign or compiler or law or process or slow)" tests
 
 check: $(VENV)/.dev $(VENV)/.docs  ## lint, types, layers, C by gcc and clang, the documentation without warnings
@@ -35,7 +35,7 @@ check: $(VENV)/.dev $(VENV)/.docs  ## lint, types, layers, C by gcc and clang, t
 	@$(BIN)/python .ci/lint_c.py $(WARNINGS)
 	@$(BIN)/python -m sphinx -W --keep-going -q docs out/docs
 
-sanitize: $(VENV)/.dev  ## run the tests of the native core with what watches memory and undefined behaviour
+sanitize: $(VENV)/.dev  ## run the tests of the native core under AddressSanitizer and UBSan
 	@$(BIN)/python -m fuzz.sanitize
 
 docs: $(VENV)/.docs  ## make the documentation site, without warnings: out/docs/index.html
@@ -43,7 +43,7 @@ docs: $(VENV)/.docs  ## make the documentation site, without warnings: out/docs/
 	@$(BIN)/python -m tests.docs.pages
 	@echo "out/docs/index.html"
 
-format: $(VENV)/.dev  ## lay the code out and sort imports
+format: $(VENV)/.dev  ## format the code and sort imports
 	@$(BIN)/ruff check --fix .
 	@$(BIN)/ruff format .
 
@@ -52,7 +52,7 @@ bench: $(VENV)/.dev  ## time monitors against peers, 17 minutes; writes benchmar
 	  || echo "rvmon: pyarrow does not install here: Parquet is not measured"
 	@$(BIN)/python -m benchmarks.results --out benchmarks/RESULTS.md $(if $(R2U2),--r2u2 $(R2U2))
 
-claims: $(VENV)/.dev  ## run what docs/claims.md claims, 3 minutes; LONG=1: all of it
+claims: $(VENV)/.dev  ## check the claims of docs/claims.md, 3 minutes; LONG=1: all of them
 	@$(BIN)/python -m benchmarks.claims $(if $(LONG),--long)
 
 extension:  ## package the extension of VS Code, from locked dependencies: dist/rvmon.vsix

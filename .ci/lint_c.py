@@ -2,8 +2,8 @@
 
     python .ci/lint_c.py [WARNING …]
 
-What binds to Python is compiled twice: with Python's headers, and with the declarations of its own.
-A compiler that is missing is named and passed over, in CI (`$CI`) it is an error.
+Sources that use Python's C API are compiled twice: with Python's headers, and with rvmon's own
+declarations. A missing compiler is reported and skipped; in CI (`$CI`) it is an error.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).parents[1] / "src" / "rvmon"
 FOLDERS = [PACKAGE / room / "native" for room in ("core", "models", "recordings")]
-FLAGS = ("-std=c99", "-O2", "-ffp-contract=off")  # some warnings come with optimising alone
+FLAGS = ("-std=c99", "-O2", "-ffp-contract=off")  # some warnings appear only with optimisation
 TRIAL = "#include <stdint.h>\n#include <stdlib.h>\nint main(void) { return 0; }\n"
 COMPILERS = {"gcc": "gcc", "clang": "clang", "gcc -m32 -msse2 -mfpmath=sse": "gcc-multilib"}
-"""Each compiler and the package of Debian that brings it."""
+"""Each compiler and the Debian package that provides it."""
 
 
 def main(warnings: list[str]) -> int:
-    """Compile everything; print what was wrong. The exit code is 1 if anything was."""
+    """Compile everything and print the errors; the exit code is 1 if there are any."""
     lines: list[list[str]] = []
     missing: list[str] = []
     for command, package in COMPILERS.items():
@@ -45,7 +45,7 @@ def main(warnings: list[str]) -> int:
 
 
 def _ways(source: Path, command: str) -> list[list[str]]:
-    """The options by which a source is compiled, one list for each time."""
+    """The options with which a source is compiled, one list per compilation."""
     if "PyObject" not in source.read_text(encoding="utf-8"):
         return [[]]
     include = sysconfig.get_path("include")
@@ -57,7 +57,7 @@ def _ways(source: Path, command: str) -> list[list[str]]:
 
 
 def _compiles(command: str) -> bool:
-    """Whether the compiler is there, with the headers and libraries of its machine."""
+    """Whether the compiler is installed, with headers and libraries for its target."""
     with tempfile.TemporaryDirectory() as folder:
         trial = Path(folder, "trial.c")
         trial.write_text(TRIAL, encoding="ascii")

@@ -1,11 +1,11 @@
-"""Build wheel and sdist into `dist`, check them, install each extra alone and import its doors.
+"""Build wheel and sdist into `dist`, check them, and install and import each extra by itself.
 
-The native core is compiled, but not run, for the systems of `TARGETS`, by the package `ziglang`.
+The package `ziglang` compiles the native core for the systems of `TARGETS`; it is not run there.
 
     python .ci/release.py [--only EXTRA …] [--no-pythons]
 
-Prints what each installation takes on the disk and its doors to import, and names what was not
-tried. Uploads nothing. The exit code is 1 if anything failed.
+Prints the disk space and the import time of each installation, and what was not tried. Uploads
+nothing. The exit code is 1 if anything failed.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ DOORS = {
     "remote": "rvmon.recordings.places fsspec",
     "s3": "rvmon.recordings.places s3fs",
 }
-"""What has to import where only this extra is installed; the core alone has no name."""
+"""Modules that must import if only this extra is installed; `""` is rvmon without extras."""
 
 TARGETS = ("x86_64-windows", "aarch64-macos", "aarch64-linux", "wasm32-wasi")
 FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-Wall", "-Wextra", "-Werror")
@@ -51,11 +51,11 @@ IMPORT = "import time; began = time.process_time(); {}; print(1000 * (time.proce
 
 
 class ReleaseError(Exception):
-    """A step failed; the text has what it printed last."""
+    """A step failed; the text is its command and last output."""
 
 
 def main() -> int:
-    """Build, check, install, and print how it went."""
+    """Build, check, install, and print the results."""
     parser = argparse.ArgumentParser(description="Build and check a release; upload nothing.")
     parser.add_argument(
         "--only",
@@ -96,7 +96,7 @@ def main() -> int:
 
 
 def _built(tools: Path) -> Path:
-    """The wheel, made from the sdist; both were checked."""
+    """Build sdist and wheel (from the sdist), check both, and return the wheel."""
     shutil.rmtree(DIST, ignore_errors=True)
     python = _environment(sys.executable, tools)
     _run([python, "-m", "pip", "install", "-q", "build>=1,<2", "twine>=6,<7"])
@@ -121,7 +121,7 @@ def _built(tools: Path) -> Path:
 
 
 def _compiled_elsewhere(tools: Path) -> str:
-    """A line about the core, but for what knows of Python, compiled for other systems."""
+    """Compile the core, without the Python binding, for other systems; return a line about it."""
     python = tools / "bin" / "python"
     _run([python, "-m", "pip", "install", "-q", "ziglang>=0.13,<1"])
     sources = [Path(core_sources.FOLDER, name) for name in core_sources.core_files()]
@@ -135,7 +135,7 @@ def _compiled_elsewhere(tools: Path) -> str:
 
 
 def _installed(wheel: Path, extra: str, python: str, folder: Path) -> str:
-    """A line about the wheel with one extra, alone in an environment."""
+    """Install the wheel with one extra into a new environment; return a row of the table."""
     alone = _environment(python, folder)
     empty = _size(folder)
     _run([alone, "-m", "pip", "install", "-q", f"{wheel}[{extra}]" if extra else wheel])
@@ -163,7 +163,7 @@ def _starts(python: str) -> bool:
 
 
 def _size(folder: Path) -> int:
-    """Bytes of a folder's files, without those that Python makes of others."""
+    """Bytes of a folder's files, without the `.pyc` files."""
     files = (path for path in folder.rglob("*") if path.is_file() and path.suffix != ".pyc")
     return sum(path.stat().st_size for path in files)
 

@@ -1,11 +1,11 @@
-"""Run the claims of `docs/claims.md`: its tables are read, there is no other list.
+"""Check the claims in the tables of `docs/claims.md`.
 
     python -m benchmarks.claims [--long] [--only WORD]
 
-A row has what is claimed, the command, a regular expression with one group that finds the figure
-in what the command prints (or `exit code`), the expected value and its tolerance: `exact`,
-`at least` or `at most`. Each finding has to hold. Each command runs once, however many
-rows have it. The exit code is 0 if all claims hold, 1 if one does not, 2 if a row is malformed.
+A row has the claim, the command, a regular expression with one group that finds the figure in the
+output of the command (or `exit code`), the expected value and its tolerance: `exact`, `at least` or
+`at most`. Every match has to hold. A command that several rows share runs once. The exit code is 0
+if all claims hold, 1 if one does not, 2 if a row is malformed.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ PAGE = ROOT / "docs" / "claims.md"
 QUICK, LONG = "## In three minutes", "## In an hour"
 EXIT_CODE = "exit code"
 SHOWN_LINES = 8
-"""Of what a command printed last, where it does not show what is claimed."""
+"""The number of last lines of output that are printed for a failed claim."""
 
 _CELL = re.compile(r"(?<!\\)\|")
 
@@ -42,14 +42,14 @@ class ClaimError(Exception):
 class Claim:
     """One row of the page."""
 
-    text: str  # what is claimed
-    command: str  # that shows it
-    pattern: str  # finds it in what the command prints; `EXIT_CODE` is the command's
-    expected: str  # a number, or a text to be equal
+    text: str  # the claim
+    command: str  # checks it
+    pattern: str  # finds the figure in the output; or `EXIT_CODE`
+    expected: str  # a number, or a text for `exact`
     tolerance: str  # `exact`, `at least` or `at most`
 
     def holds_for(self, found: str) -> bool:
-        """Whether what was found is what is claimed.
+        """Whether a found figure fulfils the claim.
 
         >>> Claim("", "", "", "5", "at least").holds_for("5.4")
         True
@@ -64,7 +64,7 @@ def claims_of(page: str, *, long: bool) -> list[Claim]:
     """The rows of the page's tables; with `long` those of the second section, too.
 
     Raises:
-        ClaimError: a row has no five cells, no such pattern or no such tolerance.
+        ClaimError: a row does not have five cells, a valid pattern and a known tolerance.
     """
     claims, wanted = [], False
     for number, line in enumerate(page.splitlines(), 1):
@@ -88,7 +88,7 @@ def claims_of(page: str, *, long: bool) -> list[Claim]:
 
 
 def main(*, long: bool = False, only: str = "") -> int:
-    """Run the claims that have a word, those that take long only if asked for; say how it went."""
+    """Check the claims that contain `only`, with `long` also the slow ones; print the results."""
     try:
         claims = claims_of(PAGE.read_text(encoding="utf-8"), long=long)
     except ClaimError as error:

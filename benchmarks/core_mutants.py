@@ -1,12 +1,12 @@
-"""Does the core's C hold a line that no test needs? Seeded mutants of it, run on recorded cases.
+"""Mutation testing of the core's C code: does it contain a line that no test needs?
 
     python -m benchmarks.core_mutants --count 30 --seed 1 [--only FILE …]
 
-Of each file so many changes are drawn, evenly over their kinds. Each is compiled alone, linked with
-the others, and judges random cases, written as bytes, of which the law and the core say the same
-(core_replay.c): it is killed if it says anything else, crashes or hangs. What does not compile is
-not counted, nor what a compiler makes the same code of. Prints each that survives, and the counts
-of each file; exits 1 if any does.
+For each file `--count` changes are drawn with a seed, evenly over their kinds. Each mutant is
+compiled, linked with the other files, and judges recorded random cases on which oracle and core
+agree (core_replay.c). It is killed if it gives other results, crashes or hangs. Mutants that do not
+compile, or compile to the same machine code, are not counted. Prints each survivor and the counts
+of each file; exits 1 if a mutant survives.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ TRACES_EACH = 4
 
 
 def recorded(pairs: int, seed: object) -> bytes:
-    """So many random cases, less those that the core does not judge, or judges otherwise."""
+    """Random cases as bytes: up to `pairs`, without those on which core and oracle differ."""
     found: list[bytes] = []
     compiler = Compiler()
     make = Maker("c", compiler)
@@ -86,7 +86,7 @@ def _case(planned: PlannedCore, case: Case) -> Iterator[int]:
 
 
 def _updates(planned: PlannedCore, values: Mapping[str, Value]) -> Iterator[Sequence[int]]:
-    """Of each update: name, what it says, a number, how many fields, these."""
+    """For each update: number of the name, kind of update, value, number of fields, fields."""
     for name, value in values.items():
         number, kind = planned.numbers[name], planned.packed.signals.get(name)
         if isinstance(value, tuple | Mapping):
@@ -102,7 +102,7 @@ def _updates(planned: PlannedCore, values: Mapping[str, Value]) -> Iterator[Sequ
 
 
 def _number(planned: PlannedCore, kind: Kind, value: Scalar) -> tuple[int, int]:
-    """Its kind and bits as `rv_number` has them."""
+    """The kind and the bits of a value as in `rv_number`."""
     if value is None or value != value:
         return 0, 0
     if kind is Kind.REAL:
@@ -111,17 +111,17 @@ def _number(planned: PlannedCore, kind: Kind, value: Scalar) -> tuple[int, int]:
 
 
 def sources() -> list[Path]:
-    """The C of the core, without the binding."""
+    """The C files of the core, without the binding."""
     return [CORE / name for name in core_sources.core_files()]
 
 
 class Trial:
-    """Objects of files of the core, one after the other replaced by a mutant's; one of the rest.
+    """The compiled core, in which the object of one file at a time is replaced by a mutant.
 
     Args:
         folder: empty.
-        cases: as `recorded` gives them.
-        changed: the files that mutants are of.
+        cases: from `recorded`.
+        changed: the files that are mutated; the other files are compiled into one object.
     """
 
     def __init__(self, folder: Path, cases: bytes, changed: Sequence[Path]) -> None:
@@ -145,7 +145,7 @@ class Trial:
             raise SystemExit(f"{path.name} without a change is not the same")
 
     def outcome(self, mutant: Mutant) -> str:
-        """`killed`, `survived`, or why it does not count: `unbuilt`, `same`."""
+        """`killed`, `survived`, or the reason why it does not count: `unbuilt`, `same`."""
         changed, made = self._folder / "mutant.c", self._folder / "mutant.o"
         changed.write_text(mutant.source, encoding="utf-8")
         if not self._compiled(changed, made):
@@ -185,10 +185,10 @@ _SWAPS = (
     ("operator", r"(?<= )(&|\|)(?= )", ("&", "|")),
     ("operator", r"(?<= )(\*|/)(?= )", ("*", "/")),
 )
-"""Kind, what is looked for, and the words of which each is replaced by its neighbour in a pair."""
+"""Kind, pattern, and words in pairs: each word is replaced by the other one of its pair."""
 
 _NEGATED = re.compile(r"^\s+(?:\} else )?if (\(.+\)) \{$")
-"""A condition that stands on one line."""
+"""A condition on a single line."""
 
 _DROPS = (
     ("off by one", r" [+-] 1\b(?!\])"),
@@ -200,7 +200,7 @@ _DROPS = (
 
 
 def c_mutants(path: Path) -> Iterator[Mutant]:
-    """All changes that are tried in a C file, outside comments, directives and declarations."""
+    """All possible changes of a C file, outside comments, directives and declarations."""
     source = path.read_text(encoding="utf-8")
     at = 0
     comment = False
@@ -230,7 +230,11 @@ def _changes(line: str) -> Iterator[tuple[str, int, int, str]]:
 
 
 def draw(found: Iterable[Mutant], count: int, seed: int) -> list[Mutant]:
-    """A seeded sample, the kinds of change in turn; what is drawn depends on no other mutant."""
+    """Draw a seeded sample, taking the kinds of change in turn.
+
+    The order within a kind depends only on each mutant itself, so code elsewhere does not change
+    it.
+    """
     kinds: dict[str, list[Mutant]] = {}
     for mutant in found:
         kinds.setdefault(mutant.kind, []).append(mutant)
@@ -247,7 +251,7 @@ def main(
     pairs: int = 1_200,
     only: Sequence[str] = (*core_sources.core_files(),),
 ) -> int:
-    """So many changes of each file, or of some."""
+    """Try `count` changes of each file, or of some files."""
     total: Counter[str] = Counter()
     with tempfile.TemporaryDirectory() as directory:
         chosen = [CORE / name for name in only]

@@ -1,13 +1,13 @@
-r"""Ours against something independent on random cases: one command line, one table.
+r"""Compare rvmon with something independent on random cases.
 
     python -m benchmarks.differential verdicts --count 100000 --seed 1 --jobs 2
     python -m benchmarks.differential verdicts --set "forms=c,c rows,c+next" traces=8 outages=100
     python -m benchmarks.differential fillings long --count 1000
 
-Prints what the cases were made of, how many disagreements there are, and some of them with their
-seeds; exits 1 if there is one. Cases of different seeds are different: runs add up. `--set` gives
-the settings of a comparison, and fields of `Profile` and `TraceProfile` (rvmon.testing.generate)
-where it draws specifications and traces.
+Prints what the cases contained, the number of disagreements, and some of them with their seeds;
+exits 1 if there is one. Different seeds give different cases, so runs add up. `--set` changes the
+settings of a comparison; if it draws specifications and traces, also fields of `Profile` and
+`TraceProfile` (rvmon.testing.generate).
 """
 
 from __future__ import annotations
@@ -30,8 +30,9 @@ from rvmon.errors import RvmonError
 from rvmon.execute.parallel import execute
 
 Judge = Callable[..., None]
-"""Given a `Campaign`, a seed, a range of numbers, and settings by name, adds what came of those
-cases; it may run in another process. What it compares is the first line of its docstring."""
+"""Takes a `Campaign`, a seed, a range of case numbers, and settings by name, and adds the results
+of these cases. May run in another process. The first line of its docstring says what it
+compares."""
 
 _SPECS = "specifications"
 _ASKED = "formulas for each way to ask"
@@ -49,17 +50,18 @@ COMPARISONS: dict[str, tuple[Judge, str, int]] = {
     "peers": (peers.judge_verdicts, _ASKED, 250),
     "peers-robustness": (peers.judge_robustness, _ASKED, 250),
 }
-"""What is counted by numbers, and how many are judged at once."""
+"""For each comparison: its function, the unit that is numbered, and the number per task."""
 
 SHOWN = 5
-"""Of the disagreements."""
+"""The number of disagreements that are printed."""
 
 
 def settings_of(judge: Judge, given: Sequence[str]) -> dict[str, Any]:
-    """The settings of a comparison, and fields of those that are dataclasses, as they are given.
+    """The settings of a comparison, with the given values; for dataclasses, of their fields.
 
     Raises:
-        ValueError: there is no such setting, or no such value.
+        ValueError: a setting is unknown.
+        ValidationError: a value does not have the type of its setting.
     """
     left = dict(entry.partition("=")[::2] for entry in given)
     found: dict[str, Any] = {}
@@ -89,7 +91,7 @@ def main(
     jobs: int = 1,
     set_: Sequence[str] = (),
 ) -> int:
-    """Compare so many of each, in some processes; show some disagreements."""
+    """Run each comparison on `count` cases, in `jobs` processes; show some disagreements."""
     if unknown := {*comparisons} - COMPARISONS.keys():
         raise SystemExit(f"no comparison `{min(unknown)}`: there are {', '.join(COMPARISONS)}")
     try:

@@ -1,16 +1,16 @@
-"""A monitor that lives long, and processes that are killed.
+"""Endurance tests: a monitor that runs for long, and processes that are killed.
 
     python -m benchmarks.endurance soak --samples 100000000
     python -m benchmarks.endurance kills --kills 200 [--only "rvmon run --resume" …]
 
-`soak` feeds a sample per millisecond, in a pattern of a second: attempts that overlap, keys that
-come again, NaN, a signal that becomes stale. How many attempts pass and fail in each second is
-known, and compared at the end. Prints memory after each tenth, and the times of steps with the time
-to ask the clock.
+`soak` feeds a sample per millisecond, in a pattern that repeats every second: overlapping attempts,
+recurring keys, NaN, a signal that becomes stale. The number of attempts that pass and fail in each
+second is known, and compared at the end. Prints memory after each tenth of the run, and the times
+of steps, including the time to read the clock.
 
-`kills` begins runs that are kept (`rvmon watch --state`, `rvmon run --resume`, shards, a campaign)
-again after each kill at a random point until they end: what they write is compared with what they
-write undisturbed. Exits 1 if anything is wrong.
+`kills` starts resumable runs (`rvmon watch --state`, `rvmon run --resume`, shards, a campaign),
+kills them at random points, and restarts them until they end. Their output is compared with that of
+undisturbed runs. Exits 1 if anything is wrong.
 """
 
 from __future__ import annotations
@@ -65,10 +65,10 @@ requirement R5 "and here it is not: undecided for ever"
 STEP_NS = 1_000_000
 ROWS = 1_000
 TAIL = 60
-"""Samples that say nothing, at the end: behind them no deadline is open."""
+"""Empty samples at the end, after which no deadline is open."""
 
 BINS, BIN_NS = 400_000, 10
-"""The times of steps are told apart to so many times so many nanoseconds."""
+"""The histogram of step times: number of bins, and nanoseconds per bin."""
 
 KNOWN = {
     "R1": (60, 40, 0),
@@ -77,11 +77,11 @@ KNOWN = {
     "R4": (100, 0, 0),
     "R5": (0, 0, 10),
 }
-"""How many attempts pass, fail and stay undecided in each second."""
+"""The number of attempts that pass, fail and stay undecided in each second."""
 
 
 def _sample(row: int, period: int) -> dict[str, Any]:
-    """Of the samples of a second: ten times the same but for the keys."""
+    """A sample of the pattern: row of 100, repeated ten times a second with other keys."""
     found: dict[str, Any] = {"p": 30 <= row < 40 or 60 <= row < 70}
     if not 70 <= row < 90:  # it is stale from 79 to 90
         found["speed"] = float("nan") if 10 <= row < 15 else 2.0 if 45 <= row < 48 else 0.8
@@ -97,7 +97,7 @@ def _sample(row: int, period: int) -> dict[str, Any]:
 
 
 def soak(*, samples: int = 1_000_000) -> int:
-    """A monitor that lives long and keeps 100 records of each verdict; 1 if a verdict is wrong."""
+    """Run a monitor that keeps 100 records of each verdict; exit 1 if a count is wrong."""
     seconds = max(10, samples // ROWS)
     monitor = rvmon.loads(SPEC).monitor(keep=100)
     rows = [_sample(row % 100, row // 100) for row in range(ROWS)]
@@ -123,7 +123,7 @@ def soak(*, samples: int = 1_000_000) -> int:
     for name, counts in monitor.finish().counts.items():
         found = [counts[one] for one in (Verdict.PASS, Verdict.FAIL, Verdict.INCONCLUSIVE)]
         known = [seconds * one for one in KNOWN[name]]
-        known[2] += name == "R2"  # it goes on, and was unknown
+        known[2] += name == "R2"  # its last attempt continues to the end and met unknown values
         wrong += found != known
         mark = "as known" if found == known else f"WRONG, it is {known}"
         print(f"{name}: {found[0]:,} P, {found[1]:,} F, {found[2]:,} I: {mark}")
@@ -137,7 +137,7 @@ RESUMED = {
     "rvmon run --shard": [f"{_JUDGE} --shard 1/2", f"{_JUDGE} --shard 2/2", _JUDGE],
     "handover run, resumed": ["handover run --tests 40 --legacy --jobs 2 --out out"],
 }
-"""Commands that are ended again and again, with all that they began, until they come to an end."""
+"""Commands that are killed, with all their subprocesses, and restarted until they finish."""
 
 SECONDS = re.compile(rb'("seconds": ?|simulated in |\bin )[\d.]+|"spent": ?[\d.]+')
 RESUMED_SPEC = """spec resumed
@@ -148,7 +148,7 @@ requirement R1
 
 
 def _written(folder: Path) -> dict[str, bytes]:
-    """Tables and tests; pages and databases hold when and how they were made."""
+    """The tables and tests written; pages and databases also record when they were made."""
     return {
         str(path.relative_to(folder)): SECONDS.sub(b"", path.read_bytes())
         for path in sorted(folder.rglob("*"))
@@ -162,18 +162,19 @@ def _main(words: str) -> object:
 
 
 def _kept(out: Path) -> int:
-    """So many bytes are kept of what is not finished."""
+    """The size in bytes of the journals of unfinished runs."""
     size = 0
     for path in out.rglob("*"):
-        with suppress(FileNotFoundError):  # it is finished just now
+        with suppress(FileNotFoundError):  # the run has just finished and removed it
             size += path.stat().st_size * (path.suffix in (".journal", ".unfinished"))
     return size
 
 
 def _resumed(kind: str, folder: Path, kills: int, dice: random.Random) -> Counter[str]:
-    """Run commands undisturbed, then killed whenever more than before is kept; again, if need be.
+    """Run commands once undisturbed, then kill and restart them until there were enough kills.
 
-    Each kill interrupts something: what was kept had grown by a random size since it was begun.
+    Each kill interrupts real work: it comes when the journal has grown by a random size since the
+    process started.
     """
     (folder / "s.rv").write_text(RESUMED_SPEC)
     for number in range(100):
@@ -204,7 +205,7 @@ def _resumed(kind: str, folder: Path, kills: int, dice: random.Random) -> Counte
 
 
 def _watched(_: str, folder: Path, kills: int, dice: random.Random) -> Counter[str]:
-    """Verdicts of lines, told by lives that are killed, beside those of one that is not."""
+    """Compare the verdicts of a repeatedly killed watch with those of an undisturbed one."""
     seed = dice.randrange(1 << 30)
     killed_watch.written(folder, seed, 40 * kills)
     expected, found, done = killed_watch.killed(folder, kills, seed)
@@ -221,11 +222,11 @@ def _watched(_: str, folder: Path, kills: int, dice: random.Random) -> Counter[s
 
 KINDS = {**dict.fromkeys(RESUMED, _resumed), "rvmon watch --state": _watched}
 WRONG = ("changed", "left behind", "lost", "of nobody")
-"""What must not be counted."""
+"""The counts that must be 0."""
 
 
 def kills(*, kills: int = 50, seed: int = 1, only: Sequence[str] = (*KINDS,)) -> int:
-    """Processes that are killed, so often each; 1 if anything is wrong."""
+    """Kill each kind of process `kills` times; exit 1 if anything is wrong."""
     bad = 0
     for kind in only:
         with tempfile.TemporaryDirectory() as folder:

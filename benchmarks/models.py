@@ -1,9 +1,9 @@
-"""The model checker: what textbook networks and the handover cost.
+"""Cost of the model checker on textbook networks and the handover.
 
     python -m benchmarks.models [--seconds 60] [--repeat 3]
 
-Prints symbolic states visited and stored, seconds of CPU (the least of some searches) and bytes of
-memory for each stored state, each network in a process of its own.
+Prints symbolic states visited and stored, CPU seconds (the least of some searches) and bytes of
+memory for each stored state. Each network is searched in a separate process.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ from rvmon.models.search.verify import verify
 HERE = Path(__file__).parent
 MODELS = HERE.parent / "examples" / "models"
 COLLISION = "E<> Station(1).Transm and Station(2).Transm and Bus.Idle"
-"""Of CSMA/CD, as TChecker asks it: the model's own query compares clocks."""
+"""The query of CSMA/CD as in TChecker; the query of the model compares clocks."""
 
 SIZES = {"fischer": (7, 8, 9, 10), "csma_cd": (7, 8, 9), "train_gate": (5, 6), "fddi": (5, 8, 10)}
 
 
 def cost(*, repeat: int = 3, seconds: float = 60.0) -> None:
-    """Textbook networks and the handover: the best of some searches, which give up in time."""
+    """Search textbook networks and the handover `repeat` times, at most `seconds` each."""
     print(f"{'query':22} {'visited':>10} {'stored':>10} {'seconds':>9} {'B/state':>8}")
     for name, size in [*((n, s) for n, sizes in SIZES.items() for s in sizes), ("handover", 0)]:
         for query, holds, told, held in _searched(name, size, repeat, seconds):
@@ -46,11 +46,11 @@ def cost(*, repeat: int = 3, seconds: float = 60.0) -> None:
 
 
 Search = tuple[str, bool | None, Statistics, float]
-"""A query, whether it holds, its cost in seconds of the CPU, bytes for each stored state."""
+"""A query, whether it holds, its statistics with CPU seconds, bytes per stored state."""
 
 
 def _searched(name: str, size: int, repeat: int, seconds: float) -> list[Search]:
-    """What the queries of a network of that name and size cost, in a process of its own."""
+    """The cost of the queries of a network, measured in a new process."""
     with ProcessPoolExecutor(1, get_context("spawn")) as pool:
         return pool.submit(_search, name, size, repeat, seconds).result()
 

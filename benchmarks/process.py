@@ -1,4 +1,4 @@
-"""What a program costs, in a process of its own."""
+"""Run a program in a separate process and measure its cost."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from pathlib import Path
 from typing import NamedTuple
 
 POLL_S = 0.005
-"""Between two looks at a process; what it is told to have used includes who began it."""
+"""Seconds between two polls of a process. The measured cost includes starting it."""
 
 
 class Cost(NamedTuple):
-    """What a process cost, and how it ended."""
+    """The cost of a process, and how it ended."""
 
-    seconds: float  # by the clock
-    cpu: float  # seconds, with those of all processes that it began and waited for
-    mebibytes: float  # the largest resident memory of the first process, as far as it was seen
-    code: int  # how it ended, below 0 by which signal
+    seconds: float  # wall-clock time
+    cpu: float  # seconds, including those of the processes it started and waited for
+    mebibytes: float  # the largest resident memory of the first process seen in polls
+    code: int  # the exit code; negative: the signal that killed it
     output: str
     errors: str
 
     @property
     def said(self) -> str:
-        """The last line that it said, if need be among what it printed."""
+        """The last line of its errors, or of its output if there are no errors."""
         lines = (self.errors.strip() or self.output.strip()).splitlines()
         return lines[-1] if lines else ""
 
@@ -43,7 +43,10 @@ def measured(
     environment: Mapping[str, str] | None = None,
     folder: Path | None = None,
 ) -> Cost:
-    """Run a program, at most so many seconds, in at most so many bytes; it ends with this one."""
+    """Run a program for at most `limit` seconds in at most `memory` bytes.
+
+    It is killed if this function is interrupted.
+    """
     began, ended, peak = time.monotonic(), 0, 0.0
     with tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
         process = subprocess.Popen(
@@ -77,7 +80,7 @@ def measured(
 
 
 def mebibytes(pid: int | str, which: str) -> float:
-    """A figure of Linux on the memory of a process; 0 if it has ended."""
+    """A memory figure of a process from `/proc`, such as `VmRSS`; 0 if the process has ended."""
     with suppress(OSError):
         found = re.search(rf"{which}:\s+(\d+) kB", Path(f"/proc/{pid}/status").read_text())
         return int(found[1]) / 1024 if found else 0.0

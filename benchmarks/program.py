@@ -1,6 +1,7 @@
-"""The command line of a benchmark: its commands are functions, their parameters the options.
+"""Command line and tables of a benchmark.
 
-And its tables, of Markdown, which terminals and documents show alike.
+Commands are functions, and their parameters are the options. Tables are Markdown, for terminals and
+documents alike.
 """
 
 from __future__ import annotations
@@ -17,16 +18,16 @@ T = TypeVar("T")
 def program(
     about: str | None, *commands: Callable[..., int | None], argv: Sequence[str] | None = None
 ) -> int:
-    """Run the command that the words name; where there is one alone it goes without a name.
+    """Run the command that the first word names; a single command needs no name.
 
-    A keyword-only parameter is an option, of its annotation's type: `bool` is a flag, a sequence
-    takes several words, which are among those of its default if that has some. Other parameters
-    are arguments. An underscore at its end is not part of a name.
+    A keyword-only parameter is an option of its annotation's type: `bool` is a flag, a sequence
+    takes several words, restricted to those of its default unless that is empty. Other parameters
+    are positional arguments. A trailing underscore is not part of the name.
 
     Args:
-        about: the docstring of the benchmark.
-        commands: return the exit code; `None`: 0.
-        argv: the words; default: those of the process.
+        about: the description, usually the docstring of the benchmark.
+        commands: functions that return the exit code; `None` means 0.
+        argv: the arguments; default: those of the process.
     """
     form = argparse.RawDescriptionHelpFormatter
     parser = argparse.ArgumentParser(description=about, formatter_class=form)
@@ -63,14 +64,17 @@ def _add(parser: argparse.ArgumentParser, command: Callable[..., int | None]) ->
 
 
 def in_turn(contenders: Sequence[T], repeats: int) -> Iterator[tuple[int, T]]:
-    """So many passes of all, each beginning with another: what the machine does meets all alike."""
+    """Yield each contender `repeats` times, in passes that start with a different contender.
+
+    Slow phases of the machine then affect all contenders alike.
+    """
     for number in range(repeats):
         first = number % max(len(contenders), 1)
         yield from ((number, one) for one in (*contenders[first:], *contenders[:first]))
 
 
 def table(head: Sequence[str], rows: Iterable[Iterable[object]]) -> Iterator[str]:
-    r"""The lines of a table, each as its row comes.
+    r"""The lines of a table, each as soon as its row is known.
 
     >>> [*table(["a", "b"], [["1|2", 2.5]])]
     ['| a | b |', '|---|---|', '| 1\\|2 | 2.5 |']

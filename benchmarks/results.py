@@ -1,13 +1,14 @@
-"""The page of results: what the product costs beside all peers, and what grows how.
+"""Measure the cost of rvmon and its peers, and write the page of results.
 
     python -m benchmarks.results [--quick] [--only SECTION …] [--r2u2 FOLDER] [--out FILE]
 
-All contenders pass over formulas with rows, one after the other or in columns: `batch` has 10^5
-beside 10^6. `files` are whole processes: families of formulas beside reelay's C++, which is built
-where g++ and Boost are, and a robot's files, one large beside DuckDB, the same as other programs
-write it, many, a tiny one; a ratio is of the first of a group over the one, where both find the
-same failures. `cliffs` are hard streams beside their quiet neighbours, `differences` where peers
-read otherwise. The page is printed, or written to the file; `--quick` takes a few minutes.
+All contenders evaluate the same formulas on the same rows, one row at a time or in columns; `batch`
+has 10^5 and 10^6 rows. `files` are whole processes. They compare families of formulas with reelay's
+C++, which is built if g++ and Boost are installed, and read a robot's files: a large one, compared
+with DuckDB, the same as other programs write it, many, and a tiny one. A ratio is the cost of the
+first contender of a group over that of another, given only if both find the same failures. `cliffs`
+are hard streams beside comparable easy ones. `differences` are formulas that peers read
+differently. The page is printed, or written to the file; `--quick` takes a few minutes.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ from benchmarks.timing.workload import FORMS, QUICK, SECTIONS, Size
 HERE = Path(__file__).parent
 TEMPLATE = HERE / "results.md.j2"
 BUILT_FOR = ("many", "bound")
-"""Sections that R2U2 takes part in: it is built anew for each workload."""
+"""The sections with R2U2: only two, because it must be built for each workload."""
 
 TITLES = {
     "online": "Online, one step per row: Timescales families",
@@ -57,25 +58,25 @@ TITLES = {
 }
 
 FLATNESS = 1.2
-"""The most by which bound 100,000 may cost more than bound 10."""
+"""The highest allowed ratio between the cost of bound 100,000 and that of bound 10."""
 
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """What is to be reached in one mode."""
+    """The goal for one mode of use."""
 
     mode: str  # what is measured
     section: str  # whose results count
     ours: str  # label of our form
     peer: str  # label of the peer
     form: str  # of the formulas
-    times: float  # the peer is to need so many times our CPU time, in the median of the workloads
-    least: float  # and at least so many times on each of them
-    changing: float  # only results where at most this share of the rows changes
+    times: float  # required ratio of the peer's CPU time to ours, in the median of the workloads
+    least: float  # required ratio on each workload
+    changing: float  # only results in which at most this share of the rows changes
 
 
 def run(size: Size, sections: Sequence[str], r2u2: Path | None) -> dict[str, Any]:
-    """Measure the chosen sections, reporting what is under way; what the page says."""
+    """Measure the chosen sections, reporting progress; return the data of the page."""
     began, environment = time.monotonic(), prepare()
     results, agreements, tables = list[Result](), list[Agreement](), dict[str, str]()
     for section in sections:
@@ -118,7 +119,7 @@ TOLD: Mapping[str, Callable[[Size, Environment], Iterator[str]]] = {
     "cliffs": lambda size, _: cliffs.lines(2 * size.rows // 5, size.repeats),
     "differences": lambda _, environment: differences.lines(environment),
 }
-"""The tables of sections in which nobody races."""
+"""The functions that make the tables of sections without a race."""
 
 
 def machine() -> str:
@@ -129,14 +130,14 @@ def machine() -> str:
 
 
 def _commit() -> str:
-    """The commit that is measured, as far as git knows it."""
+    """The measured commit, if git knows it."""
     words = ["git", "-C", str(HERE), "describe", "--always", "--dirty", "--abbrev=8"]
     done = subprocess.run(words, capture_output=True, text=True, check=False)
     return done.stdout.strip() or "unknown"
 
 
 def content(results: Sequence[Result], agreements: Sequence[Agreement]) -> dict[str, Any]:
-    """What the page says of figures: goals, a table of each section, who agrees on how much."""
+    """The data of the page from figures: goals, a table per section, agreement of verdicts."""
     compared = [one for one in agreements if one.compared]
     sections: dict[str, list[Result]] = {}
     for one in results:
@@ -159,7 +160,7 @@ def page(said: Mapping[str, Any]) -> str:
 
 
 def time_text(nanoseconds: float) -> str:
-    """Nanoseconds in a unit that people read.
+    """Nanoseconds in a readable unit.
 
     >>> time_text(1.25), time_text(430.4), time_text(25_000), time_text(3.2e6)
     ('1.2 ns', '430 ns', '25.0 µs', '3.2 ms')
@@ -171,7 +172,7 @@ def time_text(nanoseconds: float) -> str:
 
 
 def ratio_text(ratio: float) -> str:
-    """A ratio with two digits that count.
+    """A ratio with two significant digits.
 
     >>> ratio_text(0.0712), ratio_text(4.96), ratio_text(231.4)
     ('0.071×', '5.0×', '231×')
@@ -186,7 +187,7 @@ def _figure(result: Result, label: str) -> Figure | None:
 
 
 def _alike(compared: Sequence[Agreement], result: Result, ours: Figure, peer: Figure) -> bool:
-    """Whether verdicts were compared on this workload, and all and the timed ones were the same."""
+    """Whether verdicts were compared on this workload and all agreed, also in the timed run."""
     about = (by_peer(peer.label), result.name, result.form)
     checked = [one for one in compared if (one.label, one.name, one.form) == about]
     whole = ours.rows == peer.rows == result.rows
@@ -221,14 +222,14 @@ def _met(results: Sequence[Result], compared: Sequence[Agreement]) -> Iterator[S
         bounds = [one for one in results if (one.section, one.form) == ("bound", form)]
         times = [f.median for one in bounds if (f := _figure(one, "rvmon step"))]
         growths += [times[-1] / times[0]] if len(times) > 1 else []
-    if growths:  # the most that the longest deadline costs over the shortest
+    if growths:  # the highest ratio of the cost of the longest deadline to the shortest
         flat, wanted = max(growths), f"≤ {ratio_text(FLATNESS)}"
         about = ("bound 10 to 100,000", "rvmon step", "–", "–", "–", "–")
         yield *about, ratio_text(flat), wanted, "yes" if flat <= FLATNESS else "no"
 
 
 def _section(own: Sequence[Result]) -> Iterator[str]:
-    """A row for each workload; and who did not take part in how many, and why."""
+    """A row for each workload, and which contenders were not measured, how often and why."""
     labels = list(dict.fromkeys(figure.label for one in own for figure in one.figures))
     rows = (
         [one.name, one.form, f"{one.rows:,}", f"{100 * one.changing:.0f} %"]
@@ -268,8 +269,8 @@ def main(
     r2u2: Path | None = None,
     out: Path | None = None,
 ) -> None:
-    """Measure some sections, or all, and print the page, or write it."""
-    names = {str(r2u2): "FOLDER", str(out): "FILE"}  # of this machine
+    """Measure all or some sections, and print or write the page."""
+    names = {str(r2u2): "FOLDER", str(out): "FILE"}  # hide paths of this machine
     shown = [names.get(one, one) for one in sys.argv[1:]]
     command = " ".join(["python -m benchmarks.results", *shown])
     text = page({"command": command, **run(QUICK if quick else Size(), only, r2u2)})

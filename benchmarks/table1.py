@@ -1,14 +1,14 @@
-"""Table 1 over many seeds, and whether runs conform to the model.
+"""Table 1 over many seeds, and conformance of runs to the model.
 
     python -m benchmarks.table1 bands --seeds 20 [--write]
     python -m benchmarks.table1 conformance --tests 20
 
 `bands` plays the legacy robot's campaign (100 tests per random strategy, four of the model) for
-each seed: of each cell that is not nought everywhere the mean and the band that holds 95 % of the
-campaigns (empirical quantiles), with and without the fitted loss of signals at start-up, and
-whether the paper's figure lies inside; `--write` keeps the least and the greatest count for the
-page of the demo. `conformance` holds runs against the network: every run of the correct robot
-should conform, and a mutant is rejected if some run of it does not.
+each seed. For each cell that is not 0 in all campaigns it prints the mean, the band that holds 95 %
+of the campaigns (empirical quantiles), with and without the fitted loss of signals at start-up, and
+whether the paper's figure lies inside. `--write` stores the smallest and the largest count for the
+page of the demo. `conformance` compares runs with the network: every run of the correct robot
+should conform, and a mutant is rejected if one of its runs does not.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ Cell = tuple[str, str, Verdict]
 
 
 def bands(*, seeds: int = 20, seed: int = 1, write: bool = False) -> int:
-    """The band of each cell over some campaigns, on all cores."""
+    """Print the band of each cell over several campaigns, on all cores."""
     fitted: list[Counter[Cell]] = []
     unfitted: list[Counter[Cell]] = []
     for number in range(seed, seed + seeds):
@@ -90,7 +90,7 @@ def _by_cell(campaigns: Sequence[Mapping[Cell, int]]) -> dict[Cell, list[int]]:
 
 
 def _show(fitted: Sequence[Mapping[Cell, int]], unfitted: Sequence[Mapping[Cell, int]]) -> None:
-    """A row for each cell that occurs, ours or the paper's; what lies outside is `OUT`."""
+    """Print a row for each cell that is not always 0; `OUT` marks figures outside the band."""
     columns = {"with": _by_cell(fitted), "without": _by_cell(unfitted)}
     inside = Counter[str]()
     published = _published()
@@ -120,7 +120,7 @@ def _band(figures: Sequence[int]) -> tuple[float, float]:
 
 
 def conformance(*, tests: int = 20, seed: int = 1) -> int:
-    """How many runs conform, of each random strategy and others; 1 if one does not."""
+    """Print how many runs of each strategy conform, and which mutants; exit 1 if a run does not."""
     network = handover_network()
     own = [test for test in directed() if test.mutation is None and test.robot != "legacy"]
     groups = {

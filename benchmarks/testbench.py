@@ -1,20 +1,20 @@
-"""The testbench at work: faults that it sees, holes that it closes, failures that it shrinks.
+"""Measure the testbench: faults it detects, holes it closes, failures it shrinks.
 
     python -m benchmarks.testbench faults --tests 60
     python -m benchmarks.testbench closing --seeds 3
     python -m benchmarks.testbench shrinking --failures 20
 
-`faults`: sixty, each what somebody may write who reads `handover.robot.handover` alone: a line
-forgotten, two in the wrong order, a rule misunderstood, or a change that is meant well. Directed
-and disturbed tests are played on each until a requirement fails. Prints what sees it: a
-requirement, a signal that nobody judges, or nothing.
+`faults`: sixty faults of the kind that a programmer could make who knows only
+`handover.robot.handover`: a forgotten line, two lines in the wrong order, a misunderstood rule, or
+a well-meant change. Directed and disturbed tests are played on each until a requirement fails.
+Prints what detects it: a requirement, a signal that nothing judges, or nothing.
 
-`closing`: tests that it takes to close the holes of the handover, without and with the tests that
-people have written; those that added a goal, those after which each share was met,
-the size of the suite, and CPU seconds of all processes.
+`closing`: the number of tests needed to close the holes of the handover, without and with the tests
+written by people; how many tests added a goal, after how many each share was met, the size of the
+suite, and CPU seconds of all processes.
 
-`shrinking`: failing tests of robots with a planted fault, those of the model and the first of each
-random strategy: actions before and after, tests that were played, CPU seconds of this process.
+`shrinking`: failing tests of robots with a planted fault, from the model and the first of each
+random strategy. Prints actions before and after, tests played, and CPU seconds of this process.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ STRATEGIES = ("constrained", "pseudorandom", "model-based", "model-based-fastest
 
 
 def faults(*, tests: int = 60, seed: int = 1) -> int:
-    """What sees planted faults, by so many disturbed tests; 1 if one cannot be planted."""
+    """Print what detects each planted fault; exit 1 if a fault cannot be planted."""
     campaign = handover_campaign(("correct",))
     strategies = ("directed", "disturbed")
     chosen = plan(campaign, strategies, tests=tests, seed=seed).tests
@@ -73,7 +73,7 @@ def faults(*, tests: int = 60, seed: int = 1) -> int:
 
 
 def _seen(one: Tried) -> tuple[str, str]:
-    """By what a fault is seen, and what more is to be said: the strongest of what the tests say."""
+    """What detects a fault, and details; the strongest evidence is chosen."""
     if one.invalid:
         return "invalid", f": {one.invalid}"
     if one.findings:
@@ -96,7 +96,7 @@ def _mutant(name: str) -> Mutant:
 
 
 def _place(source: str, line: int) -> str:
-    """The qualified name of the function that a line is in; else that of its constant."""
+    """The qualified name of the function around a line, otherwise the constant that it defines."""
     for part in ast.walk(ast.parse(source)):
         if isinstance(part, ast.FunctionDef) and part.lineno <= line <= (part.end_lineno or 0):
             return f"{HandoverRobot.__name__}.{part.name}"
@@ -104,7 +104,7 @@ def _place(source: str, line: int) -> str:
 
 
 def closing(*, tests: int = 400, seeds: int = 3, seed: int = 1) -> None:
-    """Holes that are closed, of a campaign by at most so many tests."""
+    """Close the holes of campaigns, with at most `tests` tests each, and print the results."""
     handover = handover_campaign(("correct",))
     unwritten = replace(handover.closing, written=())
     for campaign in (
@@ -112,7 +112,7 @@ def closing(*, tests: int = 400, seeds: int = 3, seed: int = 1) -> None:
         handover,
     ):
         for number in range(seed, seed + seeds):
-            before = sum(os.times()[:4])  # with all processes that it began
+            before = sum(os.times()[:4])  # including child processes
             closed = close(campaign, "correct", seed=number, budget=Budget(tests))
             spent, met = sum(os.times()[:4]) - before, [one.met for one in closed.tests]
             shares = (
@@ -130,7 +130,7 @@ def closing(*, tests: int = 400, seeds: int = 3, seed: int = 1) -> None:
 
 
 def shrinking(*, failures: int = 20, seed: int = 1) -> None:
-    """So many failures, shrunk."""
+    """Shrink `failures` failing tests and print the results."""
     times, left = [], []
     for test, found, seconds in islice(_failures(seed), failures):
         times.append(seconds)
@@ -144,7 +144,7 @@ def shrinking(*, failures: int = 20, seed: int = 1) -> None:
 
 
 def _failures(seed: int) -> Iterator[tuple[AbstractTest, Shrunk[AbstractTest], float]]:
-    """Each test that fails, with the smallest one and the CPU seconds that this took."""
+    """Yield failing tests, each with the smallest test found and the CPU seconds used."""
     campaign = handover_campaign(("correct",))
     play = player(campaign.robots, None, None)
     planned = plan(campaign, STRATEGIES, tests=4, seed=seed).tests.values()

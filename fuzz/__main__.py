@@ -1,10 +1,11 @@
 """Fuzz rvmon: `python -m fuzz --seconds 600 [--only spec plans …] [--out out/fuzz]`.
 
-What reads is fuzzed by atheris (`pip install atheris`), the native code by AFL++, see `fuzz.native`
-(Debian's packages afl++ and libclang-rt-14-dev). Each target has its part of the time, and goes on
-from what it found before, in the folder of `--out`. Prints by target what it took, how that ended,
-what was reached, and which inputs stumbled; exits 1 if one did. Once it is fixed, an input of what
-reads is a file more in `fuzz/corpus`, which a test reads.
+Readers are fuzzed by atheris (`pip install atheris`), the native code by AFL++, see `fuzz.native`
+(Debian's packages afl++ and libclang-rt-14-dev). Each target gets an equal share of the time, and
+continues from the inputs it found before, in the folder of `--out`. Prints for each target the
+number of inputs, how they ended, the coverage reached, and the inputs that failed; exits 1 if one
+did. Once the failure of a reader is fixed, its input becomes a file of `fuzz/corpus`, which a test
+reads.
 """
 
 from __future__ import annotations
@@ -24,14 +25,14 @@ from fuzz import native
 from fuzz.targets import TARGETS, seeds
 
 LONGEST = {"spec": 3000, "recording": 1000, "snapshot": 20_000}
-"""Bytes of an input; of others 12,000."""
+"""The maximum length of an input in bytes; 12,000 for other targets."""
 
 PATIENCE = 25
-"""Seconds that an input may take."""
+"""Time limit of an input in seconds."""
 
 
 def by_atheris(name: str, folder: Path, seconds: int) -> tuple[str, Sequence[Path]]:
-    """Have atheris change inputs of a target."""
+    """Fuzz a target with atheris; return a line about it and the inputs that failed."""
     (folder / "found").mkdir(exist_ok=True)
     before = set(folder.glob("input-*"))
     for number, data in enumerate(seeds(name)):
@@ -57,7 +58,7 @@ def main(
     only: Sequence[str] = (*TARGETS, *native.TARGETS),
     out: Path = Path("out/fuzz"),
 ) -> int:
-    """Fuzz for so many seconds in all."""
+    """Fuzz for the given number of seconds in total."""
     os.environ["RVMON_CACHE"] = "off"
     code = 0
     for name in only:

@@ -1,4 +1,4 @@
-"""Inputs damaged at random, piece by piece: a reader refuses them or reads them."""
+"""Randomly damaged inputs, which a reader must refuse or read."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ or not true false E<> A[] A<> E[] EF AG --> [<=3] -> == != <= >= ++ -- += := ! ?
 ( ) { } [ ] , ; : . ' " * / % + - 0 1 -1 7 99999999999999999999 0.5 x y i P0 l0
 <template> </template> <location> <nta> </nta> &lt; &gt; &amp; &x; <![CDATA[ ]]> <!-- -->
 """.split()
-"""Words that the text forms of models give a meaning to, and some that they do not."""
+"""Words that have a meaning in the text formats of models, and some that have none."""
 
 _PIECE = re.compile(rb"([A-Za-z_]\w*)|(\d+)|(\s+)|([^\w\s]+)|(_)")
-"""What a text is made of: words, numbers, space, signs."""
+"""The pieces of a text: words, numbers, space, signs."""
 
 _NUMBERS = (b"0", b"1", b"3", b"-1", b"100", b"9999", b"16777216", b"2147483648")
 
 
 def damaged(data: bytes, random: Random, others: Sequence[bytes]) -> bytes:
-    """An input with one to five changes of pieces: of another kind, none, often, from others."""
+    """Replace, delete, repeat or insert one to five passages, also some from other inputs."""
     pieces = _pieces(data)
     for _ in range(random.choice((1, 1, 1, 1, 2, 5))):
         other = _pieces(random.choice(others))

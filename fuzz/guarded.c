@@ -1,15 +1,15 @@
-/* The memory of a monitor, each block by itself: what sanitize.py puts in the place of memory.c. */
+/* The memory of a monitor, each block allocated separately: sanitize.py replaces memory.c by this. */
 #include "basics.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Of AddressSanitizer; not every compiler brings the header. */
+/* Declarations of AddressSanitizer, because not every compiler has its header. */
 void __asan_poison_memory_region(const volatile void *place, size_t size);
 void __asan_unpoison_memory_region(const volatile void *place, size_t size);
 
-/* Before each block; poisoned, so that a step before the block is seen, too. */
+/* Stored before each block, and poisoned, so that accesses before the block are detected, too. */
 typedef struct guarded_head {
     struct guarded_head *next;
     struct guarded_head *before;
@@ -17,18 +17,18 @@ typedef struct guarded_head {
     size_t spare;
 } guarded_head;
 
-/* More than this altogether is refused, as of a machine whose memory is short. */
+/* Larger totals are refused, as on a machine whose memory is short. */
 #ifndef GUARDED_MOST
 #define GUARDED_MOST ((size_t)1 << 26)
 #endif
 
-/* Bytes that were taken and not given back. */
+/* Bytes allocated and not yet freed. */
 size_t guarded_in_use;
 
 /* Whether a block was refused. */
 bool guarded_refused;
 
-/* So many blocks more are given, then none; negative: all are. */
+/* Number of allocations that still succeed; negative: unlimited. */
 long guarded_left = -1;
 
 static guarded_head *guarded_opened(void *place)
@@ -71,7 +71,8 @@ void *arena_take(arena *a, size_t size)
     return h + 1;
 }
 
-/* A larger block is always another one; what is behind the old one's end is not to be read. */
+/* A larger block is always a new one; its bytes beyond the old size are filled with a pattern, so that
+ * code that reads them uninitialised misbehaves visibly. */
 void *arena_enlarge(arena *a, void *old, size_t size, size_t wanted)
 {
     char *made = arena_take(a, wanted);

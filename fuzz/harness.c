@@ -1,11 +1,11 @@
-/* What a fuzzer calls with its bytes (libFuzzer, or AFL++ by `-fsanitize=fuzzer`).
+/* Entry point of the fuzzer (libFuzzer, or AFL++ by `-fsanitize=fuzzer`).
  *
- * Compiled with -DPLANS: the bytes are a plan, whose hash is put right; if it is accepted, some
- * samples are judged by it. Else the first byte names one of the plans in the file `$RVMON_PLANS`, and
- * the others say what it is told. Each run is repeated after a reset, and has to say the same; again with
- * another monitor that goes on from a snapshot of it now and then; then with memory that ends somewhere,
- * and must not be green. With -DSNAPSHOTS the first byte names a plan, too, and the others are what
- * stands behind the head of a snapshot, which is put right: what is accepted judges some samples. */
+ * Compiled with -DPLANS, the bytes are a plan, whose hash is corrected. If it is accepted, it judges
+ * some samples. Otherwise the first byte selects a plan from the file `$RVMON_PLANS`, and the others
+ * are a script of calls. Each run is repeated after a reset, and again while other monitors take over
+ * from snapshots now and then; both must give the same results. Then it is repeated with limited
+ * memory, and must not be green. With -DSNAPSHOTS the first byte also selects a plan, and the others
+ * are a snapshot without its head, which is added. If it is accepted, it judges some samples. */
 #include "told.h"
 
 #include "plan/plan.h"
@@ -26,7 +26,7 @@ extern bool guarded_refused;
 int LLVMFuzzerInitialize(int *argc, char ***argv);
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-/* Bytes that say what to do; behind their end come those of a generator, `seed`, so many more. */
+/* Bytes that say which calls to make: the given ones, then `more` bytes of a generator (`seed`). */
 typedef struct {
     const uint8_t *data;
     size_t size;
@@ -35,7 +35,7 @@ typedef struct {
     uint64_t seed;
 } script;
 
-/* Notes are kept with every other plan, and wherever snapshots are read: there were some in these. */
+/* Whether notes are kept: with half of the plans, and always for snapshots, which contain notes. */
 static bool keeps_notes(size_t size)
 {
 #ifdef SNAPSHOTS
@@ -81,7 +81,8 @@ static rv_number number_of(script *s)
     return made;
 }
 
-/* Ticks to the next instant: few, or some thousands; what fails anew at each tick is told so often. */
+/* Ticks to the next instant: at most some thousands, because a requirement that fails anew at each
+ * tick makes as many records. */
 static int64_t step_of(script *s)
 {
     const uint8_t code = byte_of(s);
@@ -91,7 +92,7 @@ static int64_t step_of(script *s)
     return (code < 240) ? 8 + (int64_t)byte_of(s) : (int64_t)1 << (code % 13);
 }
 
-/* Read the notes of open attempts; what they say has no say in anything. */
+/* Read the notes of open attempts only to find bad accesses; their content is not compared. */
 static bool read_open(void *user, const rv_record *record, const rv_number *captured)
 {
     static volatile uint64_t last;
@@ -177,7 +178,7 @@ static int one_step(rv_monitor *m, script *s, int64_t t, bool in_rows)
     return rv_step(m, t, updates, count);
 }
 
-/* Names are lost, found, or came too late. */
+/* Report names as lost, found, or too late. */
 static int one_loss(rv_monitor *m, script *s, int64_t t, uint8_t what)
 {
     const rv_sizes sizes = rv_sizes_of(m);
@@ -194,7 +195,7 @@ static int one_loss(rv_monitor *m, script *s, int64_t t, uint8_t what)
     return (what == 1) ? rv_found(m, t, lost, count) : rv_late(m, t - 3, lost, count - 1);
 }
 
-/* What is told beside attempts. */
+/* Everything reported besides attempts: coverage hits, moves of automata, truths. */
 static uint64_t noted_watch(const rv_monitor *m, uint64_t sum)
 {
     const rv_range *found;
@@ -223,7 +224,7 @@ static uint64_t noted_watch(const rv_monitor *m, uint64_t sum)
     return sum;
 }
 
-/* How a run stands at an instant, told in room that is too small, too. */
+/* The situation of a run at an instant, first written into too little room. */
 static uint64_t noted_situation(rv_monitor *m, uint64_t sum, int64_t now)
 {
     static int64_t words[1 << 16];
@@ -243,14 +244,14 @@ static uint64_t noted_situation(rv_monitor *m, uint64_t sum, int64_t now)
     return mixed(mixed(sum, count), next);
 }
 
-/* What a monitor is made of. */
+/* The plan of a monitor. */
 typedef struct {
     const void *plan;
     size_t size;
-    bool forged;               /* nobody's run led there: a state behind it may be refused */
+    bool forged;               /* from an invented snapshot: later states may be refused */
 } source;
 
-/* Bytes of a run; NULL: it is spoilt. */
+/* The snapshot of a run; NULL if the run is spoilt. */
 static void *saved(rv_monitor *m, size_t *size)
 {
     void *made = NULL;
@@ -264,7 +265,7 @@ static void *saved(rv_monitor *m, size_t *size)
     return made;
 }
 
-/* Another monitor that goes on from where one stands, which is freed. */
+/* A new monitor that continues from a snapshot of `m`, which is freed. */
 static rv_monitor *taken_up(rv_monitor *m, source from)
 {
     const rv_memory memory = {malloc, realloc, free, NULL, 0};
@@ -299,8 +300,8 @@ static rv_monitor *taken_up(rv_monitor *m, source from)
     return made;
 }
 
-/* A run by a script, from its begin, or from where it stands at `t`; returns the sum of all that it
- * says. With `from`, others go on with it. */
+/* Continue a run at `t` by a script; returns the checksum of everything it reports. With `from`, other
+ * monitors take over from snapshots. */
 static uint64_t run_on(rv_monitor **own, script s, int64_t t, const source *from)
 {
     rv_monitor *m = *own;
@@ -367,7 +368,7 @@ static uint64_t run_on(rv_monitor **own, script s, int64_t t, const source *from
     return sum;
 }
 
-/* The same from its begin. */
+/* A whole run by a script. */
 static uint64_t one_run(rv_monitor **own, script s, const source *from)
 {
     static const int64_t begins[] = {0, 0, 0, INT64_C(1) << 53, (INT64_C(1) << 62) - 300,
@@ -391,11 +392,11 @@ static void judge(const void *bytes, size_t size, script s)
         const uint64_t first = one_run(&m, s, NULL);
         if ((rv_sizes_of(m).signals + rv_sizes_of(m).events <= NAMES_MOST) && !rv_spoilt(m)) {
             uint64_t again;
-            /* A name is still absent then: so what a script says of that is said of two runs. */
+            /* A reset keeps absent names, so only the next two runs can be compared. */
             (void)rv_reset(m);
             again = one_run(&m, s, NULL);
             (void)rv_reset(m);
-            guarded_refused = false; /* two at a time need more memory than one */
+            guarded_refused = false; /* two monitors at a time need more memory than one */
             if (!rv_spoilt(m) && (one_run(&m, s, &from) != again) && !guarded_refused) {
                 (void)fprintf(stderr, "%llx at first: another run says something else\n",
                               (unsigned long long)first);
@@ -442,7 +443,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (whole < sizeof head) {
         return 0;
     }
-    words = malloc(whole); /* as long as it is, so that a step beyond its end is seen */
+    words = malloc(whole); /* exactly this size, so that accesses beyond it are detected */
     if (words == NULL) {
         return 0;
     }
@@ -524,7 +525,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     from.plan = plans[data[0] % plan_count];
     from.size = plan_sizes[data[0] % plan_count];
     from.forged = false;
-    bytes = malloc(wanted); /* as long as it is, so that a step beyond its end is seen */
+    bytes = malloc(wanted); /* exactly this size, so that accesses beyond it are detected */
     if (bytes == NULL) {
         return 0;
     }

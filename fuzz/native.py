@@ -1,10 +1,11 @@
-"""The native code under AFL++, each block of its memory watched: plans, samples and snapshots.
+"""The native code under AFL++, with guarded memory blocks: plans, samples, snapshots and models.
 
-Bytes of a plan, or a snapshot, get a hash that fits, so that what is fuzzed is what is behind it.
-What is accepted judges some samples. Each run is repeated after a reset and has to say the same, if
-others go on with it from snapshots as well; then with memory that ends somewhere, and must not be
-green. Plans of the search of models are searched by bounds of both sizes, which have to agree.
-An input stumbles at which the core crashes, hangs, or is found out by AddressSanitizer or UBSan.
+The bytes of a plan or a snapshot get a matching hash, so that the fuzzer gets past that check.
+Accepted bytes judge some samples. Each run is repeated after a reset, and with other monitors that
+continue it from snapshots; both must give the same results. Then it is repeated with limited
+memory, and must not be green. Plans for the search of models are searched with bounds of 32 and of
+64 bits, which must agree. An input fails if the core crashes or hangs, or if AddressSanitizer or
+UBSan reports an error.
 """
 
 from __future__ import annotations
@@ -44,20 +45,20 @@ FLAGS = (
 )
 
 TARGETS = {"plans": ("-DPLANS",), "samples": (), "snapshots": ("-DSNAPSHOTS",), "models": ()}
-"""What is fuzzed, and how the harness is compiled for it."""
+"""Each target, and the options with which the harness is compiled for it."""
 
 SMALL = 6_000
-"""Bytes of a plan with which AFL++ begins, at most: it gets further with small ones."""
+"""The maximum size in bytes of plans that AFL++ starts with: it gets further with small ones."""
 
 PLANS = 200
-"""Of the samples."""
+"""The number of plans for the targets `samples` and `snapshots`."""
 
 TRACED_MOST = 64
-"""Locations of an automaton in which it is counted where attempts go; as plan.h has it."""
+"""The maximum number of locations of an automaton whose coverage is counted; see plan.h."""
 
 
 def _plan(rng: random.Random, profile: Profile, which: int) -> Plan:
-    """A plan that judges, or one by which formulas are watched, or bins."""
+    """A random plan: of requirements, of observed formulas, or of coverage bins."""
     if which > 5:
         return Bins(with_random_coverage(rng, profile)).plan
     compiled = compile_spec(random_spec(rng, profile))
@@ -73,7 +74,7 @@ def _plan(rng: random.Random, profile: Profile, which: int) -> Plan:
 
 
 def plans(seed: object, *, most: int, limit: int | None = None) -> Iterator[bytes]:
-    """So many packed plans of random specifications, of at most so many bytes."""
+    """Packed plans of random specifications: `most` of them, of at most `limit` bytes each."""
     rng = random.Random(str(seed))
     made = 0
     while made < most:
@@ -96,7 +97,7 @@ def plans(seed: object, *, most: int, limit: int | None = None) -> Iterator[byte
 
 
 def snapshots(most: int) -> Iterator[tuple[bytes, bytes]]:
-    """So many plans of random specifications, and of a run of each what is behind a head."""
+    """Plans of random specifications, each with the snapshot of a run without its head."""
     rng = random.Random("snapshots")
     made = 0
     while made < most:
@@ -115,7 +116,7 @@ def snapshots(most: int) -> Iterator[tuple[bytes, bytes]]:
 
 
 def compiled(folder: Path, target: str) -> Path:
-    """The program of a target, compiled into a folder.
+    """Compile the program of a target into a folder.
 
     Raises:
         CalledProcessError: the compiler failed.
@@ -137,7 +138,7 @@ def compiled(folder: Path, target: str) -> Path:
 
 
 def begun_with(folder: Path, target: str) -> None:
-    """Write the inputs that AFL++ begins with, and the plans that samples are judged by."""
+    """Write the initial inputs of AFL++, and the plans with which samples are judged."""
     held, rng = list[bytes](), random.Random("samples")
     match target:
         case "plans":
@@ -157,7 +158,7 @@ def begun_with(folder: Path, target: str) -> None:
 
 
 def by_afl(target: str, folder: Path, seconds: int) -> tuple[str, Sequence[Path]]:
-    """Fuzz a target; what is found stays in its folder, and is gone on from."""
+    """Fuzz a target; inputs found stay in its folder, and the next call continues from them."""
     made = compiled(folder, target)
     if not (folder / "in").exists():
         begun_with(folder, target)

@@ -1,8 +1,8 @@
-"""One target under atheris: inputs that reach new places of rvmon are kept and changed further.
+"""Fuzz one target with atheris: inputs that reach new code of rvmon are kept and mutated further.
 
     python -m fuzz.one TARGET FOLDER [LIBFUZZER'S OPTIONS …]
 
-The folder takes the inputs that are found, those at which something stumbles, and `answers.json`.
+The folder gets the inputs that are found, those that fail, and `answers.json`.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from pathlib import Path
 import atheris
 
 EVERY = 200
-"""Inputs between two times that the answers are written."""
+"""The number of inputs after which the answers are written again."""
 
 
 def main(name: str, folder: Path, options: list[str]) -> None:
     with atheris.instrument_imports(include=["rvmon"]):
         from fuzz.targets import ANSWERS, run, seeds
 
-        for data in seeds(name):  # imports what is imported late
+        for data in seeds(name):  # run them once so that lazy imports are instrumented, too
             run(name, data)
     ANSWERS.clear()
 

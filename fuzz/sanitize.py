@@ -1,8 +1,9 @@
-"""Run the tests of the native code compiled under AddressSanitizer and UBSan (gcc alone).
+"""Run the tests of the native code under AddressSanitizer and UBSan (only with gcc).
 
-The extension is built in a copy of the package, so that the one that is used stays as it is; there
-each block of a monitor's memory is one of its own, so that a step beyond it is seen. What Python
-itself leaves unfreed at its end is not asked for; what the core should free is for its tests.
+The extension is built in a copy of the package, so the installed one stays unchanged. In the copy
+each block of a monitor's memory is allocated separately, so that accesses beyond it are detected.
+Leaks are not checked here, because Python itself leaves memory unfreed at its end; tests of the
+core check what it must free.
 """
 
 from __future__ import annotations
@@ -18,14 +19,15 @@ COPY = ROOT / "out" / "sanitized"
 GROWN = "void *widened("
 MEMORY = "src/rvmon/core/native/memory.c"
 FLAGS = "-g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all"
-# All tests are run by our own declarations, too; and memory comes from where each block is watched:
-# Python's pools would hide a step too far, and all of Python without them takes twice as long.
+# The tests also cover our own declarations of Python's C API. Memory comes from malloc, where each
+# block is guarded: Python's pools would hide an access beyond a block, and running all of Python
+# without pools takes twice as long.
 FLAGS += " -DRVMON_OWN_PYTHON_H -DPyMem_Malloc=malloc -DPyMem_Calloc=calloc"
 FLAGS += " -DPyMem_Realloc=realloc -DPyMem_Free=free -DGUARDED_MOST=SIZE_MAX"
 
 
 def guarded_memory() -> str:
-    """The C that takes the place of the core's memory.c, which puts many blocks into one."""
+    """The C code that replaces the core's memory.c, which puts many blocks into one chunk."""
     _, found, grown = (ROOT / MEMORY).read_text(encoding="utf-8").partition(GROWN)
     if not found or grown.count("\n}\n") != 2:
         raise ValueError(f"memory.c does not end with `{GROWN}…`")
@@ -34,7 +36,7 @@ def guarded_memory() -> str:
 
 
 def main() -> int:
-    """Build, run, and hand the exit code of the tests on."""
+    """Build the extension and run the tests; return their exit code."""
     shutil.rmtree(COPY, ignore_errors=True)
     ignored = shutil.ignore_patterns("__pycache__", "*.so")
     shutil.copytree(ROOT / "src", COPY / "src", ignore=ignored)
@@ -43,8 +45,8 @@ def main() -> int:
     environment = {**os.environ, "CC": "gcc", "CFLAGS": FLAGS}
     built = [sys.executable, str(COPY / "hatch_build.py")]
     subprocess.run(built, env=environment, check=True, stdout=subprocess.DEVNULL)
-    # Python is not linked with the sanitizer, so it is loaded before all else; C++'s library too,
-    # whose exceptions it has to see before any other extension throws one.
+    # Python is not linked with the sanitizer, so the sanitizer has to be loaded first. The C++
+    # library too: the sanitizer must intercept its exceptions before any extension throws one.
     first = [_library("libasan.so"), _library("libstdc++.so")]
     environment |= {
         "LD_PRELOAD": " ".join(first),
@@ -52,11 +54,11 @@ def main() -> int:
         "UBSAN_OPTIONS": "print_stacktrace=1",
         "PYTHONPATH": os.pathsep.join([str(COPY / "src"), str(ROOT)]),
     }
-    # Here no block grows in place, so that memory is not what is stated.
+    # Guarded blocks never grow in place, so this test would find more memory than documented.
     stated = "tests/rvmon/core/test_window_numbers.py::test_members_take_the_memory_that_is_stated"
     tests = [
         *(sys.executable, "-m", "pytest", "-n", "auto", "-m", "not compiler"),
-        # Only what Python prints is held back: a finding ends the program, and must be read.
+        # Capture only what Python prints: a sanitizer report ends the process and must be visible.
         *("--capture=sys", "--deselect", stated, "tests/rvmon/core", "tests/rvmon/models/search"),
         *sys.argv[1:],
     ]

@@ -1,7 +1,7 @@
-"""What is fuzzed: each target takes bytes and raises only if something stumbles over them.
+"""The fuzz targets: each takes bytes, and raises only if rvmon fails on them.
 
-Bad input is to be refused by an `RvmonError`, which a target takes for an answer. Recordings are
-judged by columns and by samples, and what both say is compared.
+Bad input must be refused with an `RvmonError`, which a target returns as an answer. Recordings are
+judged by columns and by samples, and the results are compared.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from rvmon.trace.sample import Trace
 CORPUS = Path(__file__).with_name("corpus")
 
 ANSWERS: Counter[str] = Counter()
-"""How inputs ended, by target."""
+"""The number of inputs by how they ended."""
 
 RECORDED = """
 spec recorded
@@ -61,19 +61,19 @@ requirement R6
   then for 300 ms parts == v
   let v = parts
 """
-"""Values of all kinds, dropouts, keys and captured values."""
+"""A specification with values of all types, dropouts, keys and captured values."""
 
 TIMES = ("held", "sampled", "sampled every 100 ms")
 
 ENDS = (".csv", ".jsonl")
 
 SMALL = Budget(states=300, seconds=5.0)
-"""What each query of a model may cost."""
+"""The limits of the search for each query of a model."""
 
 
 @cache
 def _folder() -> tempfile.TemporaryDirectory[str]:
-    """Where inputs lie that are read as files; it goes with the process."""
+    """The folder of inputs that are read as files; it is removed with the process."""
     return tempfile.TemporaryDirectory(prefix="rvmon-fuzz-")
 
 
@@ -84,7 +84,7 @@ def _file(name: str, data: bytes) -> Path:
 
 
 def spec(data: bytes) -> str:
-    """A specification: findings with their places, or it is laid out, compiled and judges."""
+    """A specification: it is refused with findings, or formatted, compiled and run."""
     path = _file("s.rv", data)
     try:
         loaded = rvmon.load(path)
@@ -128,7 +128,7 @@ def _model(data: bytes, name: str) -> str:
             verify(network, query, budget=SMALL)
     except ModelError as error:
         if not error.diagnostics:
-            raise  # people would see nothing
+            raise  # without findings, the user would see no message
         return end
     return "checked"
 
@@ -140,14 +140,14 @@ def _messages(data: bytes, name: str) -> str:
         rvmon.loads(SHOP).evaluate(path, allow_missing=True)
     except RvmonError:
         return "refused"
-    except MemoryError:  # a length of a message; `rvmon run` says so
+    except MemoryError:  # an excessive message length; `rvmon run` reports it
         return "too large"
     return "judged"
 
 
 @cache
 def _sealed() -> tuple[bytes, Mapping[str, object]]:
-    """The kind of a snapshot, and what of it says to which specification and plan it belongs."""
+    """The kind of a snapshot, and the fields that name its specification and plan."""
     monitor = _recorded(TIMES[0]).monitor()
     monitor.step(0, {"speed": 1.0, "mode": "idle", "door": True, "parts": 1})
     head, _, body = monitor.snapshot().partition(b"\n")
@@ -156,7 +156,7 @@ def _sealed() -> tuple[bytes, Mapping[str, object]]:
 
 
 def snapshot(data: bytes) -> str:
-    """What a snapshot of this version and specification says, under a checksum that fits."""
+    """The content of a snapshot of this version and specification, with a matching checksum."""
     try:
         said = json.loads(data)
     except (ValueError, RecursionError):
@@ -180,14 +180,14 @@ def snapshot(data: bytes) -> str:
 
 @cache
 def seeds(name: str) -> Sequence[bytes]:
-    """What a target begins with: what is kept, or runs as they are put away today."""
+    """The initial inputs of a target: its corpus, or current snapshots of some runs."""
     if name == "snapshot":
         return [*_runs()]
     return [path.read_bytes() for path in sorted((CORPUS / name).iterdir())]
 
 
 def _runs() -> Iterator[bytes]:
-    """Snapshots without what `snapshot` gives them: they hold the plan's own numbers."""
+    """Snapshots without the fields that `snapshot` adds, because those depend on the plan."""
     belongs = _sealed()[1]
     for count in (1, 40):
         monitor = _recorded(TIMES[0]).monitor()
@@ -206,9 +206,9 @@ def _recorded(time: str) -> rvmon.Spec:
 
 
 def recording(data: bytes) -> str:
-    """A CSV file or JSON lines: columns and samples say the same.
+    """A CSV file or JSON lines: columns and samples must give the same results.
 
-    The first byte says which form and time model; the rest is the file.
+    The first byte selects the format and the time model; the rest is the file.
     """
     if not data:
         return "nothing"
@@ -220,7 +220,7 @@ def recording(data: bytes) -> str:
 
 
 def _told(time: str, path: Path, *, held: bool) -> object:
-    """The verdicts on a file, which is judged by columns, or by samples if it is held as such."""
+    """The verdicts on a file: judged by columns, or by samples if `held`."""
     try:
         spec = _recorded(time)
         read = spec.recording(path)
@@ -251,7 +251,7 @@ TARGETS: Mapping[str, Callable[[bytes], str]] = {
 
 
 def run(name: str, data: bytes) -> str:
-    """Have a target take an input; how that ended is counted."""
+    """Run a target on an input, and count how it ended."""
     end = TARGETS[name](data)
     ANSWERS[end] += 1
     return end

@@ -1,4 +1,4 @@
-/* What a monitor of the core tells beside its records, as one number: for who compares runs. */
+/* What a monitor of the core reports besides its records, as one checksum, to compare runs. */
 #ifndef RVMON_TOLD_H
 #define RVMON_TOLD_H
 
@@ -8,13 +8,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* FNV of all that is told. */
+/* FNV hash of everything that is reported. */
 static inline uint64_t mixed(uint64_t sum, int64_t what)
 {
     return (sum ^ (uint64_t)what) * UINT64_C(0x100000001b3);
 }
 
-/* Read all that is noted with a record. */
+/* The checksum of the note of a record. */
 static inline uint64_t read_note(const rv_monitor *m, const rv_record *record)
 {
     rv_note note;
@@ -41,7 +41,7 @@ static inline uint64_t read_note(const rv_monitor *m, const rv_record *record)
     return sum;
 }
 
-/* The bits of a number; which zero is the least of two, and the sign of NaN, are a compiler's choice. */
+/* The bits of a number, the same for both zeros and for all NaN: compilers differ in their signs. */
 static inline int64_t bits_of(double x)
 {
     int64_t bits = 0;
@@ -69,7 +69,7 @@ static inline uint64_t noted_margins(rv_monitor *m, uint64_t sum)
     const int64_t count = rv_margins(m, &margins);
     uint64_t found = sum;
     int64_t i;
-    for (i = 0; !rv_spoilt(m) && (i < count); i++) { /* where memory was short they mean nothing */
+    for (i = 0; !rv_spoilt(m) && (i < count); i++) { /* without meaning after a lack of memory */
         (void)note_margin(&found, &margins[i]);
     }
     rv_forget_margins(m);

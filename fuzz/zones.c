@@ -1,7 +1,7 @@
-/* What a fuzzer calls with its bytes: a plan of the search through zones.
+/* Entry point of the fuzzer: the bytes are a plan of the search through zones.
  *
- * Its first number and the places of its sections are put right; if it is accepted, it is searched in
- * bounds of 32 and of 64 bits, which have to say the same, and with memory that ends somewhere. */
+ * Its magic number and the offsets of its sections are corrected. If the plan is accepted, it is
+ * searched with bounds of 32 and of 64 bits, which must agree, and with limited memory. */
 #include "zones.h"
 
 #include <stdlib.h>
@@ -52,7 +52,7 @@ static void compare(const int32_t *plan, const double *costs, uint32_t seed)
         abort();
     }
     if (is_known(&narrow) && is_known(&poor)) {
-        abort(); /* it took more than it was allowed */
+        abort(); /* it used more memory than it was allowed */
     }
     release_answer(&narrow);
     release_answer(&wide);
