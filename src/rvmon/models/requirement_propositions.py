@@ -17,7 +17,7 @@ from rvmon.models.network.guards import conjunction, disjunction
 
 
 class NotExpressibleError(Exception):
-    """A requirement speaks of what the network does not have; the message says of what."""
+    """A requirement refers to something that the network lacks; the message names it."""
 
 
 def events_of(proposition: Proposition) -> Iterator[str]:
