@@ -91,19 +91,19 @@ def _shift(by: float) -> int:
 class UnitRule(Enum):
     """The units that an operation takes, and the unit of its result."""
 
-    SAME = "of one unit, which the result has"
-    PRODUCT = "of any unit; their product"
-    QUOTIENT = "of any unit; their quotient"
-    ROOT = "of any unit that has a root; that root"
-    POWER = "a plain number, or one of any unit to a whole constant"
-    SIGN = "of any unit; a plain number"
-    PLAIN = "plain numbers"
+    SAME = "numbers of one unit; the same unit"
+    PRODUCT = "any units; their product"
+    QUOTIENT = "any units; their quotient"
+    ROOT = "a unit that has a root; that root"
+    POWER = "plain numbers, or any unit and a constant whole exponent; the power"
+    SIGN = "any unit; a plain number"
+    PLAIN = "plain numbers; a plain number"
     OF_ANGLE = "an angle; a plain number"
     TO_ANGLE = "a plain number; an angle"
-    DIRECTION = "of one unit; an angle"
-    TURN = "angles"
+    DIRECTION = "numbers of one unit; an angle"
+    TURN = "angles; an angle"
     PLACES = "angles; a length"
-    BITS = "of type `int`"
+    BITS = "numbers of type `int`"
 
 
 class Exactness(StrEnum):
@@ -169,12 +169,14 @@ class NumericOp(StrEnum):
     MAX = "max", _exact(2, None, UnitRule.SAME, max, "the greatest")
     SQRT = "sqrt", Operation(1, 1, UnitRule.ROOT, math.sqrt, False, "the square root")
     HYPOT = "hypot", Operation(
-        2, 2, UnitRule.SAME, math.hypot, False, "the length of a vector of two sides",
+        2, 2, UnitRule.SAME, math.hypot, False, "the length of the vector (x, y)",
     )  # fmt: skip
     FLOOR = "floor", _exact(
-        1, 1, UnitRule.SAME, math.floor, "the whole number not above, in its unit",
+        1, 1, UnitRule.SAME, math.floor, "the greatest whole number not above x, in its unit",
     )  # fmt: skip
-    CEIL = "ceil", _exact(1, 1, UnitRule.SAME, math.ceil, "the whole number not below, in its unit")
+    CEIL = "ceil", _exact(
+        1, 1, UnitRule.SAME, math.ceil, "the least whole number not below x, in its unit",
+    )  # fmt: skip
     ROUND = "round", _exact(
         1, 1, UnitRule.SAME, nearest_whole, "the nearest whole number, halves away from 0",
     )  # fmt: skip
@@ -195,20 +197,20 @@ class NumericOp(StrEnum):
     POW = "pow", _library(2, UnitRule.POWER, math.pow, "x to the power of y")
     ANGLE_BETWEEN = "angle_between", Operation(
         2, 2, UnitRule.TURN, angle_between, False,
-        "by how much to turn from x to y, the shorter way: above −180° up to 180°",
+        "the turn from x to y, the shorter way: above −180°, up to 180°",
     )  # fmt: skip
     DISTANCE_ON_EARTH = "distance_on_earth", _library(
         4, UnitRule.PLACES, distance_on_earth,
-        "from (latitude, longitude) to (latitude, longitude), on a sphere",
+        "the distance from (latitude, longitude) to (latitude, longitude), on a sphere",
     )  # fmt: skip
-    BIT_AND = "bit_and", _exact(2, 2, UnitRule.BITS, operator.and_, "the bits that both have")
-    BIT_OR = "bit_or", _exact(2, 2, UnitRule.BITS, operator.or_, "the bits that one has, or both")
-    BIT_XOR = "bit_xor", _exact(2, 2, UnitRule.BITS, operator.xor, "the bits that one has alone")
+    BIT_AND = "bit_and", _exact(2, 2, UnitRule.BITS, operator.and_, "the bits set in both")
+    BIT_OR = "bit_or", _exact(2, 2, UnitRule.BITS, operator.or_, "the bits set in at least one")
+    BIT_XOR = "bit_xor", _exact(2, 2, UnitRule.BITS, operator.xor, "the bits set in exactly one")
     SHIFT_LEFT = "shift_left", _exact(
-        2, 2, UnitRule.BITS, shifted_left, "x, its bits y places up",
+        2, 2, UnitRule.BITS, shifted_left, "x shifted left by y bits",
     )  # fmt: skip
     SHIFT_RIGHT = "shift_right", _exact(
-        2, 2, UnitRule.BITS, shifted_right, "x, its bits y places down",
+        2, 2, UnitRule.BITS, shifted_right, "x shifted right by y bits",
     )  # fmt: skip
     BIT = ("bit", _exact(2, 2, UnitRule.BITS, bit, "bit y of x is set; the lowest is bit 0"))
 

@@ -42,7 +42,7 @@ class Function(Struct, frozen=True):
 
 _OF_UPDATES = (
     Function("changed", Probe.CHANGED, (Argument.SIGNAL,), "x is updated with another value"),
-    Function("known", Probe.KNOWN, (Argument.SIGNAL,), "x has a value that is known"),
+    Function("known", Probe.KNOWN, (Argument.SIGNAL,), "x has a known value"),
     Function("updated", Probe.UPDATED, (Argument.SOURCE,), "x is updated, with any value"),
     Function(
         *("age", None, (Argument.SOURCE,)),
@@ -54,7 +54,7 @@ _OF_UPDATES = (
     Function(
         *("delta", UpdateFunction.DELTA, (Argument.SIGNAL, Argument.DURATION)),
         "the difference between the last two values of x; with D, "
-        "by how much x is more than at the first instant of the last D",
+        "the increase of x since the first instant of the last D",
         optional=1,
     ),
     Function("rate", UpdateFunction.RATE, (Argument.SIGNAL,), "that difference per second"),
@@ -80,7 +80,7 @@ _AMOUNTS = (
     ),
     Function(
         *(LAST, None, (Argument.WHOLE, Argument.NUMBER)),
-        "the last n updates of x, or of what φ reads, in place of a D: `mean(last(5, x)) <= 2`",
+        "the last n updates of x, or of what φ reads, instead of a D: `mean(last(5, x)) <= 2`",
     ),
 )
 

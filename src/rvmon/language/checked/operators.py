@@ -236,7 +236,7 @@ class BinaryOp(_Sign):
     )  # fmt: skip
     IFF = Operator(
         "<->", "<->", Tense.PRESENT, Window.NONE, 0, _same,
-        "{left} exactly if {right}", "either {left} or {right}, not both", "both hold, or none",
+        "{left} exactly if {right}", "either {left} or {right}, not both", "both hold, or neither",
         chained=True, also=("iff",),
     )  # fmt: skip
     XOR = Operator(

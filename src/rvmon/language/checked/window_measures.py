@@ -34,54 +34,54 @@ class Measured(StrEnum):
 
     COUNT = (
         *("count", Members.TRUTHS, Dimension.PLAIN, "how often φ was true in the last D"),
-        *("between what it may be", 64, 128),
+        *("between its extremes", 64, 128),
     )
     DURATION = (
         *("duration", Members.TIME, Dimension.TIME),
         "for how long φ was true in the last D, up to this instant",
-        *("between what it may be", 64, 128),
+        *("between its extremes", 64, 128),
     )
     SUM = (
-        *("sum", Members.EVENTS, Dimension.SAME, "what x came to in the last D, together"),
-        *("unknown; between what it may be where a condition is not known", 64, 980),
+        *("sum", Members.EVENTS, Dimension.SAME, "the sum of x over the last D"),
+        *("unknown; between its extremes if only a condition is", 64, 980),
     )
     MEAN = (
         *("mean", Members.EITHER, Dimension.SAME),
-        "the mean of x at all instants of the last D, of a field at its occurrences",
-        *("unknown, as of nothing", 64, 980),
+        "the mean of x over all instants of the last D; of a field, over its occurrences",
+        *("unknown, also without members", 64, 980),
     )
     INTEGRAL = (
         *("integral", Members.HELD, Dimension.TIMES_TIME),
         "x times the time for which it was held, in the last D, up to this instant",
-        *("unknown; between what it may be where a condition is not known", 64, 980),
+        *("unknown; between its extremes if only a condition is", 64, 980),
     )
     VARIANCE = (
         *("variance", Members.EITHER, Dimension.SQUARE),
-        "the mean square of how far x was from its mean, in the last D; in `time held` of fields",
-        *("unknown, as of nothing", 64, 980),
+        "the mean squared deviation of x from its mean in the last D; in `time held`, of fields",
+        *("unknown, also without members", 64, 980),
     )
     DELTA = (
         *("delta", Members.HELD, Dimension.SAME),
-        "by how much x is more than at the first instant of the last D",
-        *("unknown if one of both is", 64, 128),
+        "the increase of x since the first instant of the last D",
+        *("unknown if either value is", 64, 128),
     )
     DISTINCT = (
         *("distinct", Members.EVENTS, Dimension.PLAIN),
-        "how many different values the updates of x in the last D brought",
-        *("at least as many as are known", 96, 128, False),
+        "the number of different values among the updates of x in the last D",
+        *("at least the number of known values", 96, 128, False),
     )
     MIN = (
         *("min", Members.EITHER, Dimension.SAME, "the least value that x had in the last D"),
-        *("between what it may be; unknown in an expression, as of nothing", 64, 128),
+        *("between its extremes; unknown in an expression, or without members", 64, 128),
     )
     MAX = (
         *("max", Members.EITHER, Dimension.SAME, "the greatest value that x had in the last D"),
-        *("between what it may be; unknown in an expression, as of nothing", 64, 128),
+        *("between its extremes; unknown in an expression, or without members", 64, 128),
     )
     AGO = (
-        *("ago", Members.HELD, Dimension.SAME, "the value that x had D ago; in `time held`"),
+        *("ago", Members.HELD, Dimension.SAME, "the value of x D ago; only in `time held`"),
         *(
-            "unknown if that is; no value before D has passed since the first known value of x",
+            "unknown if that value is; none until D has passed since the first known value of x",
             64,
             128,
         ),
@@ -116,7 +116,7 @@ class Measured(StrEnum):
     @property
     def memory(self) -> str:
         """The memory that a window needs, in words."""
-        return f"{self.fixed} bytes, and up to {self.each} a member, or stretch of equal ones"
+        return f"{self.fixed} bytes, and up to {self.each} per member or stretch of equal members"
 
     @property
     def of_numbers(self) -> bool:
