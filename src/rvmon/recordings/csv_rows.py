@@ -131,8 +131,8 @@ def layout_of(header: Sequence[str], stamps: Stamps, schema: Schema) -> Layout:
 
 
 NEVER_WRITTEN = (
-    "there are zero bytes, as where a block of a file was never written: lines may be missing: "
-    "copy it again, or end it there"
+    "there are zero bytes, as in a file of which a block was never written: lines may be missing: "
+    "copy it again, or cut it off there"
 )
 
 
@@ -298,7 +298,7 @@ def unended(
         )
         for name in sorted(lost & ignoring):
             raise TraceError(
-                f"line {line}: it has no end: if it was cut off, `{name}` was another value: end "
+                f"line {line}: it has no end: if it was cut off, `{name}` had another value: end "
                 "the line, or leave it out"
             )
         yield line, t, {**values, **dict.fromkeys(lost)}, lost

@@ -70,9 +70,9 @@ class FileRecording:
         self._format = format_of(self.path)
         brings_stamps = self.is_of_messages and self._format not in ARRAYS
         if brings_stamps and schema.stamps is not None:
-            raise TraceError(f"{self.path}: messages bring their stamps along: use --clock")
+            raise TraceError(f"{self.path}: messages have stamps of their own: use --clock")
         if self._format not in (*MESSAGE_FORMS, JOINED) and schema.binding != BY_NAME:
-            message = "a binding or clock is of messages, which bags and MCAP files hold: use --map"
+            message = "bindings and clocks are for messages, as in bags and MCAP files: use --map"
             raise TraceError(f"{self.path}: {message}")
         # false for a stream, which can be read once only
         self.can_be_read_again = can_be_read_again(self.path)
@@ -291,7 +291,7 @@ class FileRecording:
             return []
         names = ", ".join(f"`{name}`" for name in sorted(self._text.lost))
         remark = (
-            f"it has no end: if it was cut off, {names} was another value, so it is unknown; "
+            f"it has no end: if it was cut off, {names} had another value, so it is unknown; "
             "if not, end the line"
         )
         return [Health(HealthKind.CUT, "the last line", remark=remark)]
@@ -326,7 +326,7 @@ def messages_of(path: str) -> MessageFile:
     """
     recording = FileRecording(path, Schema({}, {}))
     if recording._joined is not None:
-        raise TraceError(f"{path}: of several files bindings are proposed one by one: name each")
+        raise TraceError(f"{path}: bindings are proposed for one file at a time: name a single one")
     if recording._messages is None:
         raise TraceError(f"{path}: has columns and no topics: use --map")
     return recording._messages

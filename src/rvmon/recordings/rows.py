@@ -42,7 +42,7 @@ def doubt_unit(times: Sequence[int], stamps: Stamps) -> list[Health]:
     the first thousand span 10,000 s or more. A unit that the user has named is not doubted.
 
     >>> doubt_unit([20 * TICKS_PER_SECOND * k for k in range(10)], Stamps("t", "s"))[0].remark
-    'from stamp to stamp it is 20 s: are these milliseconds? `--time t:ms` (if not: `--time t:s`)'
+    'stamps are 20 s apart: are these milliseconds? `--time t:ms` (if not: `--time t:s`)'
     """
     if stamps.is_stated or stamps.unit != "s" or len(times) < FEWEST:
         return []
@@ -53,7 +53,7 @@ def doubt_unit(times: Sequence[int], stamps: Stamps) -> list[Health]:
         return []
     column = stamps.column
     remark = (
-        f"from stamp to stamp it is {format_ticks(int(step))}: are these milliseconds? "
+        f"stamps are {format_ticks(int(step))} apart: are these milliseconds? "
         f"`--time {column}:ms` (if not: `--time {column}:s`)"
     )
     return [Health(HealthKind.UNIT, column, 1, times[0], remark=remark)]
@@ -266,7 +266,7 @@ class Rows:
             last, t = self._leaps[0]
             remark = (
                 f"from {format_ticks(last)} to {format_ticks(t)} there are "
-                f"{(t - last) / LEAP:.1f} years: is one of them of another clock?"
+                f"{(t - last) / LEAP:.1f} years: is one of them from another clock?"
             )
             found.append(Health(HealthKind.CLOCK, "stamps", len(self._leaps), t, remark=remark))
         return found

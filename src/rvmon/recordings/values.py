@@ -68,7 +68,7 @@ def _whole_of(text: str) -> int:
     number = int(text)
     if -_LARGEST <= number < _LARGEST:
         return number
-    raise TraceError(f"`{shorten(text)}` is too large for a whole number: 64 bits hold it no more")
+    raise TraceError(f"`{shorten(text)}` is too large for a whole number: at most 64 bits")
 
 
 def double_of(text: str) -> float:

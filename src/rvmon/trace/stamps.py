@@ -160,7 +160,7 @@ def ticks_of_iso(text: str) -> int:
     if match is None:
         raise TraceError(
             f"time `{shown}` is no date and time of ISO 8601 such as "
-            "2024-05-01T12:00:00.123456789+02:00, of at most nine digits behind the point"
+            "2024-05-01T12:00:00.123456789+02:00, with at most nine digits after the point"
         )
     clock = (match["clock"] or "00:00").replace(",", ".").partition(".")[0]
     try:

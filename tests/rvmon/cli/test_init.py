@@ -164,4 +164,4 @@ def test_between_stamps_of_two_clocks_lies_no_silence_that_is_proposed(put, says
     put("clocks.csv", "t,x,go,done\n" + rows)
     assert main(["init", "clocks.csv", "-o", "made.rv"]) == 0
     told = says(0, "run", "made.rv", "clocks.csv").out
-    assert "is one of them of another clock?" in told.replace("\n    ", " ")
+    assert "is one of them from another clock?" in told.replace("\n    ", " ")

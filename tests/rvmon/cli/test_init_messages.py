@@ -144,4 +144,4 @@ def test_a_topic_that_cannot_be_read_is_left_out_with_the_reason(tmp_path, says)
             writer.add_message(speed, t, b'{"data": %d}' % n, t)
         writer.finish()
     text = written(tmp_path, tmp_path / "a.mcap", says)
-    assert "count" in text.partition("# What cannot be declared as it is:")[2]
+    assert "count" in text.partition("# What cannot be declared, and why:")[2]

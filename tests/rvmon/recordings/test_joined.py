@@ -167,7 +167,7 @@ def test_no_piece_is_cut_out_of_several_files(both, says):
     for words, told in (
         ([*clip, "--from", "0", "--to", "1", "-o", "c.csv"], "clip each of them, by --from"),
         ([*clip, "R#1", "--reproducer", "c.rvcase"], "clip each of them, by --from"),
-        (["init", both, "--for", "s.rv"], "of several files bindings are proposed one by one"),
+        (["init", both, "--for", "s.rv"], "bindings are proposed for one file at a time"),
     ):
         assert told in says(2, *words).err
 

@@ -131,8 +131,8 @@ def test_the_command_line_warns(tmp_path, monkeypatch, capsys, says):
     (tmp_path / "s.rv").write_text(SPEC)
     (tmp_path / "a.csv").write_text("t,x\n" + "".join(f"{20 * k},1\n" for k in range(50)))
     assert main(["run", "s.rv", "a.csv", "--format", "json"]) == 0
-    assert "warning: a.csv: `t`: from stamp to stamp it is 20 s" in capsys.readouterr().err
-    assert "t  warning: from stamp to stamp" in says(0, "run", "s.rv", "a.csv").out
+    assert "warning: a.csv: `t`: stamps are 20 s apart" in capsys.readouterr().err
+    assert "t  warning: stamps are 20 s apart" in says(0, "run", "s.rv", "a.csv").out
     shown = says(0, "run", "s.rv", "a.csv", "--time", "t:ms")
     assert "warning" not in shown.out + shown.err
     assert "to 0.98 s" in shown.out
@@ -155,7 +155,7 @@ def test_one_stamp_of_another_clock_is_a_finding(spec, tmp_path):
         pairs = [(t, {"x": 1.0}) for t in stamps]
         for trace in (table, path, pairs):
             [remark] = of_clocks(spec.evaluate(trace))
-            assert "years: is one of them of another clock?" in remark
+            assert "years: is one of them from another clock?" in remark
     assert (
         f"from 5 s to {since_1970} s there are 53.9 years"
         in of_clocks(spec.evaluate([(5, {"x": 1.0}), (since_1970, {"x": 1.0})]))[0]

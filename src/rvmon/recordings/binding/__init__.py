@@ -106,7 +106,7 @@ def _bound(name: str, table: Mapping[str, Any], spec: CheckedSpec) -> Bound:
         raise RvmonError('which topic feeds it? topic = "/…"')
     type_name = table.get("type", "")
     if not isinstance(type_name, str):
-        raise RvmonError('which type have the messages? type = "nav_msgs/msg/Odometry"')
+        raise RvmonError('what is the type of the messages? type = "nav_msgs/msg/Odometry"')
     value = None if "value" not in table else _value(table["value"], "value")
     on_change = _choice(table, "on", On) is On.CHANGE
     clock = _choice(table, "clock", Clock)
@@ -127,7 +127,7 @@ def _bound(name: str, table: Mapping[str, Any], spec: CheckedSpec) -> Bound:
     declared = spec.signals[name].type
     labels = _table(table, "labels", "label")
     if labels and declared.kind is not Kind.LABEL:
-        raise RvmonError(f"`labels` are of a signal of labels, and it is declared {declared.kind}")
+        raise RvmonError(f"`labels` are for signals of labels, and it is declared {declared.kind}")
     for label in labels.values():
         if label not in declared.labels:
             meant = did_you_mean(str(label), declared.labels, ", ".join(declared.labels))
@@ -154,7 +154,7 @@ def _value(text: Any, key: str) -> Term:
 
 def _converted(value: Term, given: str, kind: Kind, declared: str) -> Term:
     if kind is not Kind.REAL or not declared:
-        raise RvmonError(f"`unit` is of a signal that is declared with one: real [{given}]")
+        raise RvmonError(f"`unit` is for signals that are declared with one: real [{given}]")
     try:
         source, target = parse_unit(given), parse_unit(declared)
     except UnknownUnitError as error:

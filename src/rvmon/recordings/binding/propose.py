@@ -75,7 +75,7 @@ def propose(spec: CheckedSpec, source: MessageFile) -> Proposal:
         for name, own in found.items()
         if is_clear(wanted[name], own) and not _is_idle(own, ranges)
     }
-    lines = ['clock = "log"  # or "header": the stamps of the headers count']
+    lines = ['clock = "log"  # or "header": times are the stamps in the headers']
     for name, candidate in chosen.items():
         lines += ["", f"[bind.{_key(name)}]  # {_described(types.get(name))}"]
         if guess := wanted[name].guess:
@@ -201,9 +201,9 @@ def _open_lines(
 ) -> Iterator[str]:
     what = _described(type_)
     if found:
-        yield f"# Several fit `{name}` ({what}) as well as each other: choose one."
+        yield f"# Several sources fit `{name}` ({what}) equally well: choose one."
     elif near:
-        yield f"# Nothing is called like `{name}` ({what}). Of what is measured in such a unit:"
+        yield f"# Nothing has a name like `{name}` ({what}). These are measured in such a unit:"
     else:
         yield f"# Nothing was found for `{name}` ({what}):"
     yield f"# [bind.{_key(name)}]"

@@ -20,7 +20,7 @@ from rvmon.trace.time import ticks_of_seconds
 
 _Key = tuple[int, bool]
 _UNREAD = "there is a line that cannot be read"
-_DROPPED = "what recorded it says that frames were lost"
+_DROPPED = "the recorder reports that frames were lost"
 _NEVER, _ALWAYS = re.compile("(?!)"), re.compile("")
 _ERROR = r"\(\S+\)\s+\S+\s+[23]"
 """The start of an error frame in candump's format, up to the first digit of its identifier."""
@@ -88,8 +88,8 @@ class FrameMessages(Messages):
                 self.count += 1
         if not self.count:
             raise TraceError(
-                f"no frame is of a message that the databases know, of {others:,}: name the right "
-                'one in a binding, as `definitions = ["car.dbc"]`'
+                f"none of its {others:,} frames is in the databases: name the right one in a "
+                'binding, as `definitions = ["car.dbc"]`'
             )
         self._several = {name for name, found in channels.items() if len(found) > 1}
         self.topics = {

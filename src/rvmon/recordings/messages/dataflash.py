@@ -57,7 +57,7 @@ def dataflash_messages(path: Path) -> ColumnMessages:
 
     with open(path, "rb") as file:
         if file.read(2) != _MAGIC:
-            raise TraceError("is no DataFlash log: it begins otherwise")
+            raise TraceError("is no DataFlash log: it does not start like one")
     with _silent(), errors_as_damage("DataFlash"):
         log = Indexed(str(path))
         data = np.frombuffer(log.data_map, np.uint8)

@@ -70,7 +70,7 @@ def array_messages(path: Path, stamps: Stamps | None) -> column_topics.ColumnMes
     elif path.suffix.lower() == ".mat" and head:
         tree, close = _matrices(path), lambda: None
     else:
-        raise TraceError("is no HDF5 file: it begins otherwise")
+        raise TraceError("is no HDF5 file: it does not start like one")
     topics = list(_topics(tree, "", stamps))
     if not topics:
         close()
@@ -79,8 +79,8 @@ def array_messages(path: Path, stamps: Stamps | None) -> column_topics.ColumnMes
             meant = did_you_mean(stamps.column, names, f"there are {', '.join(names[:8])}")
             raise TraceError(f"no array of stamps `{stamps.column}`: {meant}")
         raise TraceError(
-            f"no array is called as stamps are ({', '.join(_TIMES[:4])}, …): name it with --time "
-            f"ARRAY[:UNIT]; there are {', '.join(names[:8]) or 'none'}"
+            f"no array has a usual name of stamps ({', '.join(_TIMES[:4])}, …): name it with "
+            f"--time ARRAY[:UNIT]; there are {', '.join(names[:8]) or 'none'}"
         )
     with errors_as_damage(_FORM):
         end = max((int(topic.load()[0].max()) for topic in topics if topic.count), default=None)

@@ -49,7 +49,7 @@ def mcap_messages(path: Path, definitions: Mapping[str, str]) -> Messages:
     if not head:
         raise TraceError("is an empty file: record it again")
     if not head.startswith(_MAGIC):
-        raise TraceError("is no MCAP file: it begins otherwise")
+        raise TraceError("is no MCAP file: it does not start like one")
     _refuse_damaged_summary(path)
     # After the magic: opcode (1 byte), length (8), length of the profile (4), the profile.
     if head[17:21] == b"\4\0\0\0" and head[21:25] == b"ros2":

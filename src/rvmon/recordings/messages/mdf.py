@@ -40,7 +40,7 @@ def open_measurement(path: Path) -> Any:
         from asammdf import MDF
     with open(path, "rb") as file:
         if not file.read(8).startswith((b"MDF", b"UnFinMF")):
-            raise TraceError("is no MDF file: it begins otherwise")
+            raise TraceError("is no MDF file: it does not start like one")
     logging.getLogger("asammdf").setLevel(logging.CRITICAL)
     with errors_as_damage("MDF"), _quietly_freed():
         return MDF(path)
@@ -134,7 +134,7 @@ def _times(file: Any, group: int) -> Any:
     counted = file.groups[group].channel_group.cycles_nr
     if len(times) != counted:
         raise TraceError(
-            f"holds {len(times):,} records of a group, and says itself that it has {counted:,}: "
+            f"holds {len(times):,} records of a group, but its header counts {counted:,}: "
             "copy it again"
         )
     return times

@@ -97,7 +97,7 @@ def refuse_fewer(found: int, counted: int) -> None:
     """Raise `TraceError` if fewer messages were found than the recording itself counts."""
     if found < counted:
         raise TraceError(
-            f"holds {found:,} messages of the topics that are read, and says itself that it has "
+            f"holds {found:,} messages of the topics that are read, but its index counts "
             f"{counted:,}: copy it again, or reindex it"
         )
 

@@ -225,10 +225,10 @@ def starter_text(profile: Profile) -> str:
     others = [column for column in profile.columns if column.name not in read]
     if others:
         # As comments: the checker would warn of declarations that no requirement reads.
-        lines += ["", "# What else there is: take away the `#` before what a requirement reads."]
+        lines += ["", "# Other names: remove the `#` before those that a requirement reads."]
         lines += [f"# {_declaration(column)}" for column in others]
     if profile.left_out:
-        lines += ["", "# What cannot be declared as it is:"]
+        lines += ["", "# What cannot be declared, and why:"]
         plain = {_plain(name): why for name, why in profile.left_out.items()}
         lines += [f"#   {reason}" for reason in reasons_of(plain, _LISTED)]
     return format_text("\n".join(lines) + "\n")

@@ -216,7 +216,7 @@ def test_definitions_that_a_bag_lacks_are_named(read, tmp_path):
         ('[bind.speed]\ntopic="/a"\nvalue="x"\nunits="m/s"', "no key `units` of a .* `unit`"),
         ('[bind.speed]\ntopic="/a"\nvalue="x"\nunit="mph"', "unknown unit `mph`"),
         ('[bind.speed]\ntopic="/a"\nvalue="x"\nunit="m"', r"\[m\] cannot be converted to \[m/s\]"),
-        ('[bind.moving]\ntopic="/a"\nvalue="x"\nunit="m"', "`unit` is of a signal that"),
+        ('[bind.moving]\ntopic="/a"\nvalue="x"\nunit="m"', "`unit` is for signals that"),
         ('[bind.speed]\ntopic="/a"\nvalue="x +"', r"value = 'x \+': found the end"),
         ('[bind.speed]\ntopic="/a"\nvalue="sinh(x)"', "no function `sinh` in a value"),
         ('[bind.speed]\ntopic="/a"\nvalue="sqrt(x, y)"', "`sqrt` takes 1 numbers, not 2"),

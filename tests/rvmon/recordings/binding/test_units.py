@@ -107,5 +107,5 @@ def test_a_binding_of_another_robot_is_told(tmp_path):
     with pytest.raises(rvmon.TraceError, match=r"holds nav_msgs/msg/Odometry, .* says a_"):
         rvmon.loads(SPEC).evaluate(bag, binding=path, allow_missing=True)
     path.write_text('[bind.speed]\ntopic = "/odom"\ntype = 3\nvalue = "x"\n')
-    with pytest.raises(RvmonError, match="which type have the messages"):
+    with pytest.raises(RvmonError, match="what is the type of the messages"):
         rvmon.loads(SPEC).reading(binding=path)

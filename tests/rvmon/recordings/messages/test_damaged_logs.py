@@ -80,7 +80,7 @@ def test_a_group_of_mdf_that_has_fewer_records_than_it_counts_is_told(tmp_path):
     assert struct.unpack_from("<Q", data, counted) == (6,)
     struct.pack_into("<Q", data, counted, 7)
     path.write_bytes(data)
-    with pytest.raises(TraceError, match="holds 6 records of a group, and says itself that it has"):
+    with pytest.raises(TraceError, match="holds 6 records of a group, but its header counts"):
         spec.evaluate(path)
 
 

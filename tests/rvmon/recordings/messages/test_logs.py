@@ -186,7 +186,7 @@ def test_the_stamps_of_arrays_can_be_named(tmp_path):
         file["data/when"] = [0, 10, 20]
         file["data/speed"] = [1.0, 2.0, 3.0]
     spec = rvmon.loads("spec s\nsignal data.speed : real\nrequirement R\n always data.speed < 3")
-    with pytest.raises(TraceError, match="no array is called as stamps are"):
+    with pytest.raises(TraceError, match="no array has a usual name of stamps"):
         spec.evaluate(path)
     assert spec.evaluate(path, time="data/when:ms").attempts[0].decided == 20_000_000
 
