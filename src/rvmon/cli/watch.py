@@ -10,6 +10,7 @@ import stat
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from io import FileIO
 from typing import TYPE_CHECKING
 
@@ -20,6 +21,7 @@ from rvmon.cli.reading import mapped_names, refuse_empty
 from rvmon.cli.watch_kept import no_line, refuse_others, watch_kept
 from rvmon.cli.watch_output import Output, output_named
 from rvmon.errors import RvmonError, SpecError
+from rvmon.language.rules import TooManyErrors
 from rvmon.live import Clock, Judgement, Live, SimulatedClock, WallClock
 from rvmon.recordings import FORMATS, form_of_folder
 from rvmon.recordings.places import endings_of
@@ -37,7 +39,8 @@ _LAST_DOMAIN = 232  # the last DDS domain that has ports
 
 def run_watch(arguments: argparse.Namespace) -> int:
     """Monitor until the stream ends or the user interrupts, and return the exit code."""
-    arguments.age = _age(arguments.spec)  # before the file is read, so that no change is missed
+    # Before the files are read, so that no change is missed.
+    arguments.ages = _ages(arguments.spec)
     spec = _loaded(arguments)
     if arguments.state is not None:
         return _watch_kept(arguments, spec)
@@ -244,11 +247,12 @@ def _follow(
                 feeding.join(_TURN)
             if shown.broken is not None:
                 raise shown.broken
-            if (age := _age(arguments.spec)) != arguments.age:
-                arguments.age = age
+            ages = arguments.ages
+            if changed := [file for file in ages if _age(file) != ages[file]]:
+                arguments.ages = _ages(arguments.spec, *ages)
                 try:
                     _replace(arguments, live)
-                    shown.note(f"{arguments.spec} has changed: the new one holds from here on")
+                    shown.note(f"{changed[0]} has changed: the new one holds from here on")
                 except (SpecError, RvmonError) as error:
                     shown.note(f"{error}\nThe former specification stays in use.")
             shown.show(live)
@@ -286,6 +290,16 @@ def _is_recording(path: str) -> bool:
         return False
     with open(path, "rb") as file:
         return not file.read(1024).lstrip().startswith(b"{")  # a `.log` may hold anything
+
+
+def _ages(spec: str, *others: str) -> dict[str, tuple[int, int] | None]:
+    """The ages of a specification, the files it imports and some others, by path."""
+    from rvmon.reproducer import imported_files
+
+    files = [spec, *others]
+    with suppress(OSError, UnicodeDecodeError, TooManyErrors):
+        files += imported_files(spec)
+    return {file: _age(file) for file in files}
 
 
 def _age(path: str) -> tuple[int, int] | None:

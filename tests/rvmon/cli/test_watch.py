@@ -133,6 +133,32 @@ def test_a_change_that_names_what_nobody_listens_to_is_not_taken_up(door, says, 
     assert "The former specification stays in use. door.rv has changed: the new one holds" in said
 
 
+def test_a_change_of_an_imported_file_is_taken_up(door, says, monkeypatch):
+    """Also of one that another imports, and that is broken, or gone, for a while."""
+    source = nullcontext(SimpleNamespace(publish=print))
+    source.publish = print
+    monkeypatch.setattr("rvmon.adapters.dds.DdsSource", lambda *_, **__: source)
+    (door / "main.rv").write_text('import "names.rv"\n' + DOOR)
+    (door / "names.rv").write_text('import "times.rv"\n')
+    (door / "times.rv").write_text("const T = 1 s\n")
+    changes = ["const", None, "const T = 2 s\n"]
+
+    def sleep(_):
+        if not changes:
+            raise KeyboardInterrupt
+        text = changes.pop(0)
+        (door / "new.rv").write_text(text or "")
+        os.replace("new.rv", "times.rv")
+        if text is None:
+            os.unlink("times.rv")
+
+    monkeypatch.setattr("rvmon.cli.watch.time.sleep", sleep)
+    said = says(1, "watch", "main.rv", "dds:7", "--format", "text")
+    said = " ".join((said.out + said.err).split())
+    assert said.count("The former specification stays in use") == 2
+    assert said.count("times.rv has changed: the new one holds") == 1
+
+
 @pytest.mark.slow
 def test_a_watch_of_too_many_robots_is_no_success(door, says):
     lines = [json.dumps({"t": 0, "robot": n, "closed": True}) for n in range(1_001)]
