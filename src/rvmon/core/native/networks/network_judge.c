@@ -1,18 +1,18 @@
 /* A judge whose formula is a delay network (network.h): letters, time, attempts, the end.
  *
- * Where a letter stays (gap > 0) the network is not stepped at each position. The judge is due at a
- * lower bound of its next decision (earliest_change); when that comes, one step runs ahead as if the
+ * While a letter stays (gap > 0) the network is not stepped at each position. The judge is due at a
+ * lower bound of its next decision (earliest_change). At that instant one step runs ahead as if the
  * letter stayed, the exact instant of the next decision is searched, and the step is undone until that
- * instant or another letter comes. */
+ * instant or a new letter comes. */
 #include "networks/network.h"
 
 #include <string.h>
 
-/* How far to look ahead: so many times as long as since the last search, or the last letter. So the
- * number of searches is logarithmic in how long nothing happens, and where they come often, as new
- * attempts or decisions do, none looks much further than the next. */
+/* How far to look ahead, as a multiple of the time since the last search or the last letter. So the
+ * number of searches is logarithmic in how long nothing happens; and if searches are frequent, because
+ * attempts or decisions are, none looks much further than the next. */
 #define FURTHER 4
-/* Letters between two prunings, whose cost they share. */
+/* Number of letters between two prunings, over which their cost is spread. */
 #define TIDY_EVERY 8
 
 bool is_networked(const run *r, int32_t index)
@@ -49,7 +49,7 @@ judging judging_of(run *r, int32_t index)
     return g;
 }
 
-/* New networks for a formula; NULL: memory is short. A judge has them made at its first letter. */
+/* New networks for a formula; NULL: memory is short. A judge makes them at its first letter. */
 networks *made_networks(const form *f)
 {
     const size_t size = (size_t)f->form->operators.count * sizeof(operator_state);
@@ -72,7 +72,7 @@ networks *made_networks(const form *f)
     return made;
 }
 
-/* Whether some leaf of the letter is unknown: true for the better only. */
+/* Whether some leaf of the letter is unknown, that is, true only in the better reading. */
 static bool parts(const judging *g)
 {
     int32_t i;
@@ -84,8 +84,8 @@ static bool parts(const judging *g)
     return false;
 }
 
-/* Prune now and then, and go back to one reading where both agree. Letters up to `position` may still
- * be to be stepped. */
+/* Prune now and then, and return to one reading if both agree. Letters up to `position` may not have
+ * been stepped yet. */
 static void prune_sometimes(judging *g, int64_t position)
 {
     const int32_t at = g->j->first;
@@ -115,7 +115,7 @@ int64_t earliest(const judging *g, int64_t now)
     return (found > now) ? found : now;
 }
 
-/* Up to which instant to look ahead. */
+/* The instant up to which to look ahead. */
 static int64_t ahead_of(const judging *g, int64_t now)
 {
     const int64_t since = now - g->net->searched;
@@ -126,7 +126,7 @@ static int64_t ahead_of(const judging *g, int64_t now)
 }
 
 /* Set a judge due at the next instant up to `until` at which an attempt is decided if the letter stays,
- * else behind `until`. The networks are not changed. */
+ * or else after `until`. The networks are not changed. */
 static void foresee(judging *g, int64_t until)
 {
     const int64_t decided = step_to_decision(g, until, last_at(g, until));
@@ -134,7 +134,7 @@ static void foresee(judging *g, int64_t until)
     set_due(g, (decided < NEVER) ? decided : until + 1);
 }
 
-/* The same for a judge that is due by `now`: its exact instant matters where a failure starts another
+/* The same for a judge that is due by `now`: its exact instant matters if a failure starts another
  * attempt (clock.c). */
 void network_foresee(run *r, int32_t index, int64_t now)
 {
@@ -151,7 +151,7 @@ static void decide_up_to(judging *g, int64_t now, int64_t last)
     int64_t decided = -LIMIT;
     while ((g->j->first >= 0) && (decided < NEVER)) {
         decided = step_to_decision(g, now, last);
-        judge_added(g, least(decided, now)); /* if nothing is decided, a reading may be */
+        judge_added(g, least(decided, now)); /* even if no attempt is decided, one reading may be */
         set_due(g, least(decided, now));
     }
 }
@@ -159,7 +159,7 @@ static void decide_up_to(judging *g, int64_t now, int64_t last)
 /* Let time come to `now`; see decide_up_to(). If letters are known up to there, look ahead. */
 static void pass(judging *g, int64_t now, int64_t last)
 {
-    const bool complete = last == last_at(g, now); /* else the letter at `now` is still to be read */
+    const bool complete = last == last_at(g, now); /* else the letter at `now` is not read yet */
     if ((g->f.gap > 0) && complete) {
         const int64_t due = earliest(g, now);
         if (due > now) {
@@ -182,7 +182,7 @@ static void pass(judging *g, int64_t now, int64_t last)
     }
 }
 
-/* Let time come to `now`; `is_position`: the letter stays up to there, else it is unknown at `now`. */
+/* Let time come to `now`. `is_position`: the letter stays up to `now`, else it is not known at `now`. */
 void network_pass(run *r, int32_t index, int64_t now, bool is_position)
 {
     judging g = judging_of(r, index);
@@ -191,9 +191,9 @@ void network_pass(run *r, int32_t index, int64_t now, bool is_position)
     }
 }
 
-/* Put off what is decided by `until` to the visit behind it, which finds the instants all the same: a
- * search less. Not where a failure may start another attempt of the running episode before that. `lag`
- * remembers how long before the new due instant something may have been decided. */
+/* Put off decisions up to `until` to the visit after it, which finds their instants all the same; that
+ * saves a search. Not done if a failure may start another attempt of the running episode before that.
+ * `lag` remembers how long before the new due instant something may have been decided. */
 void network_put_off(run *r, int32_t index, int64_t until)
 {
     judge *j = &r->judges[index];
@@ -224,7 +224,7 @@ bool read_leaves(const run *r, const form *f, networks *net, bool *parted)
     return changed;
 }
 
-/* From here on the letter is the one that was read. */
+/* From here on `leaf` is the letter that was read. */
 static void adopt_next_letter(judging *g)
 {
     (void)memcpy(g->net->leaf, g->net->next_leaf, (size_t)g->f.form->leaves);
@@ -274,7 +274,7 @@ static void come_to(judging *g, int64_t t)
     g->net->turn = position;
     learn_all(g, t, position);
     if ((due_of(g) - g->j->lag < t) && (decided_position(g) < NEVER)) {
-        /* Something may have been decided before `t`, by the letter of before: undo, and find that. */
+        /* The previous letter may have decided something before `t`: undo the step, and find it. */
         unlearn_all(g);
         g->net->turn = NEVER;
         decide_up_to(g, t - 1, position - 1);
@@ -314,8 +314,8 @@ bool network_enter(run *r, int32_t index, int32_t at, int64_t t)
     return judge_attempt(&g, at, t);
 }
 
-/* The trace ends at `end`, and time has come to `reached`: a last step decides what time alone does,
- * and a further one of the worse reading applies the rule for the end (`closed`). */
+/* The trace ends at `end`, and time has come to `reached`. A last step decides everything that time alone
+ * decides; a further step of the worse reading applies the rule for the end (`closed`). */
 void network_close(run *r, int32_t index, int64_t end, int64_t reached)
 {
     judging g = judging_of(r, index);

@@ -1,13 +1,13 @@
 /* Nodes of a delay network (network.h): one update function per operator, and the step over all.
  *
- * Operators come in dual pairs, told apart by `turned`: `and`, G, and the dual of `until` have it. So
- * `turned ^ 1` is the value that one operand, or one position of a window, decides alone, and `turned`
- * the value that needs all of them.
+ * Operators come in dual pairs, distinguished by `turned`, which is set for `and`, G, and the dual of
+ * `until`. So `turned ^ 1` is the value that one operand, or one position of a window, decides alone,
+ * and `turned` is the value that needs all of them.
  *
  * An update function is called once per step, operands first, and has to add exactly the ranges that
- * this step makes known: from the ranges added to the operands, and, where time or new positions
- * matter, from the stretch between `was_now` and `now`, or `was_last` and `last`. add_known() skips
- * ranges that were known before. */
+ * this step makes known: from the ranges added to the operands and, if time or new positions matter,
+ * from the stretch between `was_now` and `now`, or `was_last` and `last`. add_known() skips ranges that
+ * were already known. */
 #include "networks/network.h"
 
 /* The instant of a clock's position, clamped to +-LIMIT. */
@@ -17,8 +17,8 @@ static int64_t ticks_of(int64_t position, int64_t step)
     return (position >= most) ? LIMIT : ((position <= -most) ? -LIMIT : position * step);
 }
 
-/* The instant of a position. Of a sample it is looked up; behind the last one each later position is a
- * tick further, as early as it can be; samples that were dropped are long ago. */
+/* The instant of a position. That of a sample is looked up; each position after the last sample is one
+ * tick later, the earliest possible; that of a dropped sample is -LIMIT. */
 int64_t instant_of(const form *f, const network *w, int64_t position)
 {
     int64_t t = -LIMIT;
@@ -43,8 +43,8 @@ int64_t position_by(const form *f, const network *w, int64_t t)
     return w->oldest + (range_from(&w->samples, t + 1) - w->samples.first) - 1;
 }
 
-/* The first position at least `distance` behind another (before it if negative): ticks, or positions of
- * a clock. up_to(): the last position at most so far behind. */
+/* The first position at least `distance` after another (before it if negative), in ticks, or in positions
+ * of a clock. up_to(): the last position at most that far after it. */
 int64_t from_on(const form *f, const network *w, int64_t position, int64_t distance)
 {
     return (f->gap > 0) ? moved(position, distance)
@@ -64,7 +64,7 @@ bool knows(const operator_state *o, uint8_t value, int64_t position)
 }
 
 /* Add [first, last] to the positions at which a node is known to have a value, and to those added in
- * this step, except for positions that are known already or that no attempt needs (before `base`). */
+ * this step, except for positions that are already known or that no attempt needs (before `base`). */
 void add_known(const form *f, operator_state *o, uint8_t value, int64_t first, int64_t last)
 {
     ranges *known = &o->known[value];
@@ -145,9 +145,9 @@ static void add_windows_with(const form *f, const network *w, const operator_pla
                              operator_state *o, const range *found, int64_t first, int64_t last)
 {
     const uint8_t some = (uint8_t)(n->turned ^ 1);
-    /* low > high: no tick of the clock lies in the window, so it has none of them. */
+    /* low > high: no tick of the clock lies in the window, so no window has a found position. */
     int64_t position = (n->low <= n->high) ? found->first : found->last + 1;
-    /* Samples may be further apart than a window is wide: then not all positions between are in one. */
+    /* Samples may be further apart than a window is wide; then some positions are in no window. */
     const int64_t step = (f->gap > 0) ? found->last - found->first + 1 : 1;
     while (position <= found->last) {
         const int64_t start = from_on(f, w, position, -n->high);
@@ -157,9 +157,9 @@ static void add_windows_with(const form *f, const network *w, const operator_pla
     }
 }
 
-/* Add the positions in [begin, last] at whose window, which is complete, the operand has the value that
- * needs all positions; an empty window has it. Goes from window to window, or jumps over those that one
- * position without the value is in. */
+/* Add the positions in [begin, last] in whose complete window the operand has, at all positions, the
+ * value that needs all; an empty window counts. Goes from window to window, or jumps over the windows
+ * that contain a position without the value. */
 static void add_windows_filled(const form *f, const network *w, const operator_plan *n,
                                operator_state *o, int64_t begin, int64_t last)
 {
@@ -183,7 +183,7 @@ static void add_windows_filled(const form *f, const network *w, const operator_p
                 until = (known->at[i].last >= w->last)
                     ? last : up_to(f, w, known->at[i].last + 1, -n->high - 1);
             } else if ((f->gap > 0) || ((n->low <= 0) && (n->high >= 0))) {
-                /* No window is empty: go to the first one that begins behind what is not known. */
+                /* No window is empty: go to the first one that starts after the unknown positions. */
                 i += begun ? 1 : 0;
                 until = from_on(f, w, (i < known->end) ? known->at[i].first - 1 : w->last,
                                 1 - n->low) - 1;
@@ -199,7 +199,7 @@ static void add_windows_filled(const form *f, const network *w, const operator_p
 }
 
 /* WINDOW: F or G over [low, high], of the future (`over` >= 0: ticks until it is complete) or the past.
- * `front`: the last position whose window is complete now, `before`: at the last step. */
+ * `front` is the last position whose window is complete now, `before` that at the last step. */
 static void update_window(const form *f, const network *w, const operator_plan *n, operator_state *o)
 {
     const operator_state *operand = &w->nodes[n->left];
@@ -215,7 +215,7 @@ static void update_window(const form *f, const network *w, const operator_plan *
         /* The past: windows of new positions also reach back to what was known before. */
         const ranges *known = &operand->known[(uint8_t)(n->turned ^ 1)];
         const int64_t begin = from_on(f, w, w->was_last + 1, n->low);
-        /* Before the first position there are none, though a `since` below says something of them. */
+        /* There are no positions before the first one, although a `since` below has values there. */
         const int64_t first = (begin > w->first) ? begin : w->first;
         const int64_t last = up_to(f, w, w->last, n->high);
         for (i = range_from(known, first); (i < known->end) && (known->at[i].first <= last); i++) {
@@ -233,8 +233,8 @@ static void update_window(const form *f, const network *w, const operator_plan *
     add_windows_filled(f, w, n, o, before + 1, front);
 }
 
-/* Add the positions whose shifted position is in `found`. Of samples the shift goes to the first one at
- * least `low` ahead, or the last one at least -low back. */
+/* Add the positions whose shifted position is in `found`. In sampled time the shift goes to the first
+ * sample at least `low` ahead, or the last one at least -low back. */
 static void add_shifted(const form *f, const network *w, const operator_plan *n, operator_state *o,
                         uint8_t value, const range *found)
 {
@@ -248,8 +248,8 @@ static void add_shifted(const form *f, const network *w, const operator_plan *n,
     }
 }
 
-/* SHIFT: the operand so far ahead, or back. One that the end of the trace cuts off counts as TRUE if
- * `kept`. */
+/* SHIFT: the operand at a distance ahead, or back. A position beyond the end of the trace counts as TRUE
+ * if `kept`. */
 static void update_shift(const form *f, const network *w, const operator_plan *n, operator_state *o)
 {
     const operator_state *operand = &w->nodes[n->left];
@@ -275,8 +275,8 @@ static void update_shift(const form *f, const network *w, const operator_plan *n
     }
 }
 
-/* One step of a reading: time comes to `now`, and letters are known for positions up to `last`. Leaves
- * have the letter `leaf` up to the position before `turn`, and `next_leaf` from there on. */
+/* One step of a reading: time comes to `now`, and letters are known for positions up to `last`. The
+ * letter is `leaf` for positions before `turn`, and `next_leaf` from there on. */
 void learn(const form *f, networks *net, int32_t reading, int64_t now, int64_t last)
 {
     network *w = &net->readings[reading];
@@ -306,7 +306,7 @@ void learn(const form *f, networks *net, int32_t reading, int64_t now, int64_t l
     }
 }
 
-/* Undo the last step, by the ranges that it added. Only one step can be undone. */
+/* Undo the last step by removing the ranges that it added. Only one step can be undone. */
 void unlearn(const form *f, network *w)
 {
     int32_t i;

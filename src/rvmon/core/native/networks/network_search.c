@@ -1,12 +1,12 @@
 /* When a network decides attempts: the exact first instant, and a bound before which it cannot.
  *
- * A step may jump over many instants at each of which attempts were decided. What is known depends on
- * (now, last) alone and only grows, so the step is undone, and the first instant at which an attempt
- * is decided is searched by halving, with guesses first, which mostly hit. The bound (earliest_change)
- * says how long no search is needed at all. */
+ * A step may jump over many instants at which attempts were decided. What is known depends on (now,
+ * last) alone and only grows. So the step is undone, and the first instant at which an attempt is decided
+ * is searched by bisection, after guesses that mostly hit. The bound (earliest_change) says how long no
+ * search is needed at all. */
 #include "networks/network.h"
 
-/* Guesses per search; then it halves, so that a bad guess costs a bounded number of steps. */
+/* The most guesses per search; then it bisects, so that bad guesses cost a bounded number of steps. */
 #define GUESSES 16
 
 /* One step of all readings; undone by unlearn_all(). */
@@ -32,12 +32,12 @@ int64_t last_at(const judging *g, int64_t t)
     return (g->f.gap > 0) ? floored(t, g->f.step) : g->net->readings[0].last;
 }
 
-/* Guess the instant at which `position` of the root became known, by a step to `high`; guesses into
- * `found`, the likeliest last. Returns how many.
+/* Guess the instant at which `position` of the root became known in a step to `high`. Writes the guesses
+ * into `found`, the likeliest last, and returns how many.
  *
- * What a step makes known of a node is mostly a range that grew with time, up to a front: then a
- * position became known as long before `high` as it lies before the front. Or a window was complete:
- * then it did so as the window was over. */
+ * A step mostly makes known a range of a node that grows with time up to a front; then a position became
+ * known as long before `high` as it lies before the front. Or a window was complete; then a position
+ * became known when its window was over. */
 static int32_t guess(const judging *g, int64_t position, int64_t high, int64_t *found)
 {
     const int32_t operators = g->f.form->operators.count;
@@ -71,8 +71,8 @@ static int32_t guess(const judging *g, int64_t position, int64_t high, int64_t *
 }
 
 /* Step to (now, last), but no further than the first instant at which an attempt is decided. Returns
- * that instant, NEVER: none is. Invariant of the search: nothing is decided at `low`, something is at
- * `high`. `lag`: decisions may have been put off from so long before the judge was due. */
+ * that instant; NEVER: none is decided. Invariant of the search: nothing is decided at `low`, something
+ * is at `high`. `lag`: decisions from that long before the judge was due may have been put off. */
 int64_t step_to_decision(judging *g, int64_t now, int64_t last)
 {
     int64_t found[GUESSES];
@@ -112,7 +112,7 @@ int64_t step_to_decision(judging *g, int64_t now, int64_t last)
             if (count == GUESSES) {
                 count--;
             }
-            found[count] = high - 1; /* is the last guess exact? then this one ends the search */
+            found[count] = high - 1; /* if the last guess was exact, this one ends the search */
             count++;
         }
     }
@@ -128,15 +128,15 @@ int64_t step_to_decision(judging *g, int64_t now, int64_t last)
  * Per operator and value, `earliest` bounds when a position with that value can be added; it is
  * computed operands first, O(operators). Positions are added from `base` on, the first unknown one. */
 
-/* Whether a value is known at some position at or behind another. */
+/* Whether a value is known at some position at or after another. */
 static bool has_from(const operator_state *o, uint8_t value, int64_t position)
 {
     const ranges *known = &o->known[value];
     return (known->first < known->end) && (known->at[known->end - 1].last >= position);
 }
 
-/* When an operator can have a value somewhere from a position on: now, if it is known to; else when
- * a position can be added. */
+/* When an operator can have a value somewhere from a position on: now, if it is known to have it there;
+ * else when a position can be added. */
 static int64_t earliest_from(const operator_state *o, uint8_t value, int64_t position, int64_t now)
 {
     return has_from(o, value, position) ? now : o->earliest[value];
@@ -207,7 +207,7 @@ int64_t earliest_change(const form *f, networks *net, int32_t reading)
         } else if (n->kind == OP_UNTIL) {
             earliest_of_until(w, n, o);
         } else {
-            /* Operators of the past: a position may be added at once. */
+            /* For operators of the past a position may be added at once. */
         }
     }
     return least(w->nodes[count - 1].earliest[0], w->nodes[count - 1].earliest[1]);
@@ -215,8 +215,8 @@ int64_t earliest_change(const form *f, networks *net, int32_t reading)
 
 /* ---- attempts: each is a position of the root */
 
-/* Decide an attempt by what is known, at `t`; false: it is decided. Nothing is once memory was short,
- * as knowledge may be wrong then. */
+/* Decide an attempt at `t` by what is known; false: it is decided. Nothing is decided once memory was
+ * short, as knowledge may then be wrong. */
 bool judge_attempt(judging *g, int32_t at, int64_t t)
 {
     attempt *x = attempt_of(g, at);
@@ -244,7 +244,7 @@ bool judge_attempt(judging *g, int32_t at, int64_t t)
     return true;
 }
 
-/* The oldest attempt at or behind a position; -1: none. */
+/* The oldest attempt at or after a position; -1: none. */
 static int32_t attempt_from(const judging *g, int64_t position)
 {
     int32_t at = g->j->first;
@@ -276,7 +276,7 @@ int64_t decided_position(const judging *g)
     return NEVER;
 }
 
-/* The first position at or behind another at which the last step made the root known; NEVER: none. */
+/* The first position at or after another at which the last step made the root known; NEVER: none. */
 static int64_t next_new(const judging *g, int64_t position)
 {
     int64_t found = NEVER;

@@ -1,4 +1,4 @@
-/* A network as a whole: reset, copied, compared, pruned, described for rv_situation(); and sets of
+/* Operations on a whole network: reset, copy, compare, prune, describe for rv_situation(); and sets of
  * positions as ranges. */
 #include "basics.h"
 #include "networks/network.h"
@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* Begin at a position, whose letter is still to be read. */
+/* Start at a position, whose letter is not read yet. */
 void reset_network(const form *f, network *w, int64_t t, int64_t position)
 {
     int32_t i;
@@ -48,7 +48,7 @@ void copy_network(const form *f, network *made, const network *w)
     made->closed = w->closed;
 }
 
-/* Whether two networks know the same: from here on one reading is enough. */
+/* Whether two networks know the same, so that one reading is enough from here on. */
 bool networks_agree(const form *f, const network *one, const network *other)
 {
     bool found = true;
@@ -62,8 +62,8 @@ bool networks_agree(const form *f, const network *one, const network *other)
     return found;
 }
 
-/* The first position at or behind another at which a node has no known value. Ranges of the two values
- * alternate, so each is skipped in turn. */
+/* The first position at or after another at which a node has no known value. Ranges of the two values
+ * alternate, so they are skipped in turn. */
 static int64_t open_from(const operator_state *o, int64_t position)
 {
     int64_t at = position;
@@ -78,15 +78,15 @@ static int64_t open_from(const operator_state *o, int64_t position)
     return at;
 }
 
-/* A parent asks for positions from here on. */
+/* Note that a parent needs positions from here on. */
 static void want(operator_state *o, int64_t position)
 {
     o->wanted = least(o->wanted, position);
 }
 
-/* Drop positions that are not needed, given that open attempts are at `position` or behind. From the
- * root down each node says from which position on it needs its operands: its `base`, the first that it
- * does not know itself, moved by its window. */
+/* Drop positions that are not needed, given that open attempts are at or after `position`. From the root
+ * down, each node says from which position on it needs its operands: from its `base`, the first position
+ * that it does not know itself, moved by its window. */
 void prune(const form *f, network *w, int64_t position)
 {
     int64_t first = position;
@@ -100,7 +100,7 @@ void prune(const form *f, network *w, int64_t position)
         const operator_plan *n = &f->nodes[i];
         operator_state *o = &w->nodes[i];
         int64_t kept = o->wanted;
-        if (n->kind == OP_SINCE) { /* it needs its last value to go on, whether or not a parent does */
+        if (n->kind == OP_SINCE) { /* it needs its own last value to continue */
             o->base = open_from(o, o->base);
             kept = least(kept, o->base - 1);
         } else {
@@ -133,8 +133,8 @@ void prune(const form *f, network *w, int64_t position)
     }
 }
 
-/* Write what the networks of a judge know and may still be asked for, relative to now: equal words mean
- * equal decisions from here on. */
+/* Write what the networks of a judge know, and what may still be queried, relative to now: equal words
+ * mean equal decisions from here on. */
 void put_networks(situation *s, run *r, int32_t index)
 {
     const form f = form_of(r, index);
@@ -172,9 +172,9 @@ void put_networks(situation *s, run *r, int32_t index)
     }
 }
 
-/* ---- sets of positions: ranges, sorted, with gaps between them; those before `first` are dropped */
+/* ---- sets of positions: ranges, sorted, with gaps between them; those before `first` were dropped */
 
-/* The index of the first range that ends at or behind a position; `end`: none. */
+/* The index of the first range that ends at or after a position; `end`: none. */
 int32_t range_from(const ranges *r, int64_t position)
 {
     int32_t low = r->first;
@@ -227,9 +227,9 @@ static bool widen(rv_monitor *m, ranges *r)
     return true;
 }
 
-/* Open a slot before range `place`; returns its index, which changes where the slots of dropped ranges
- * are used, or -1: memory is short. Those before it move if they are fewer and can: what a network
- * learns is mostly near one end. */
+/* Open a slot before range `place`; returns its index, which changes if slots of dropped ranges are used;
+ * -1: memory is short. The ranges before it move if they are fewer and there is room, as a network mostly
+ * learns near one end. */
 static int32_t opened(rv_monitor *m, ranges *r, int32_t place)
 {
     int32_t i = place;
@@ -268,7 +268,7 @@ void ranges_put(rv_monitor *m, ranges *r, int32_t place, int64_t first, int64_t 
     }
 }
 
-/* Remove a range; those before or behind it move, whichever are fewer. */
+/* Remove a range; the ranges before it or after it move, whichever are fewer. */
 static void take_out(ranges *r, int32_t i)
 {
     if (i - r->first < r->end - i) {
@@ -280,7 +280,7 @@ static void take_out(ranges *r, int32_t i)
     }
 }
 
-/* Add positions that are in no range, merged with neighbours; `i`: the first range behind them. */
+/* Add positions that are in no range, merged with neighbours; `i` is the first range after them. */
 void ranges_insert(rv_monitor *m, ranges *r, int32_t i, int64_t first, int64_t last)
 {
     const bool left = (i > r->first) && (r->at[i - 1].last + 1 == first);

@@ -1,6 +1,6 @@
 /* `until` and `since` without bounds, in a delay network: a range that becomes known extends as far as
- * their left operand holds. Each rule starts from the ranges added to one operand, so the cost of a
- * step is in the ranges that it adds. `yes` is the value of the whole where `right` has it, `no` the
+ * their left operand holds. Each rule starts from the ranges added to one operand, so the cost of a step
+ * grows with the ranges that it adds. `yes` is the value that `right` alone gives to the whole, `no` the
  * other one; for the duals (release, trigger) the values are swapped. */
 #include "networks/network.h"
 
@@ -49,7 +49,7 @@ void update_until(const form *f, const network *w, const operator_plan *n, opera
         }
     }
     if ((w->closed < NEVER) && (n->kept != 0)) {
-        /* The end of the trace: what a release requires "for ever" counts as true (`kept`). */
+        /* At the end of the trace, what a release requires for ever counts as true (`kept`). */
         j = range_around(&right->known[no], w->last);
         add_known(f, o, no, (j < 0) ? w->last + 1 : right->known[no].at[j].first, w->last);
     }

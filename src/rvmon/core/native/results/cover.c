@@ -1,9 +1,9 @@
-/* Coverage: hits of the items of coverpoints and crosses. A hit counts only where it is certain.
+/* Coverage: hits of the items of coverpoints and crosses. Only certain hits count.
  *
- * A group with an occasion samples its bins where an attempt `upon` that occasion would start. Any
- * other group samples at every position: an item with a pulse among its bins is hit at each position at
- * which it is true, any other once per stretch on which it is true. A position at which it is unknown
- * does not end the stretch, since it may have been true. An item is true if all its bins are.
+ * A group with an occasion samples its bins where an attempt `upon` that occasion would start. Any other
+ * group samples at every position: an item with a pulse among its bins is hit at each position at which
+ * it is true, any other item once per stretch on which it is true. A position at which the item is
+ * unknown does not end the stretch, since it may have been true. An item is true if all its bins are.
  *
  * Work is done only where a watch changed or a pulse is true (call_watch), and only for the groups of
  * that watch. */
@@ -11,7 +11,7 @@
 
 #include <string.h>
 
-/* Words of as many bits as there are watches. */
+/* The number of words that hold one bit per watch. */
 static int32_t words_of(const part_plan *p)
 {
     return (p->watches.count + 63) / 64;
@@ -77,7 +77,7 @@ bool begin_cover(home *h)
     return true;
 }
 
-/* Have the groups of a watch evaluate the position at hand. */
+/* Mark the groups of a watch to evaluate the current position. */
 void call_watch(run *r, int32_t number)
 {
     covering *c = r->home->covering;
@@ -101,7 +101,7 @@ static uint8_t truth_of(const run *r, int32_t number)
     return r->truth[r->part->watches[number].node];
 }
 
-/* Keep whether a watch is true. */
+/* Store whether a watch is true. */
 static void keep_truth(run *r, int32_t number)
 {
     const uint64_t bit = UINT64_C(1) << (number & 63);
@@ -109,7 +109,7 @@ static void keep_truth(run *r, int32_t number)
     *word = (truth_of(r, number) == IS_TRUE) ? (*word | bit) : (*word & ~bit);
 }
 
-/* The same for all, after a snapshot was read, which has the truths of nodes. */
+/* The same for all watches, after a snapshot was read, which has the truths of nodes. */
 void keep_truths_of_watches(run *r)
 {
     int32_t i;
@@ -118,7 +118,7 @@ void keep_truths_of_watches(run *r)
     }
 }
 
-/* Collect the bins of an axis whose bit is set, from a place of `bins` on; returns the place behind. */
+/* Collect the bins of an axis whose bit is set, from a place of `bins` on; returns the place after. */
 static int32_t collect_bins(covering *c, const uint64_t *bits, int32_t first, int32_t count, int32_t used)
 {
     const int32_t end = first + count;
@@ -137,7 +137,7 @@ static int32_t collect_bins(covering *c, const uint64_t *bits, int32_t first, in
     return place;
 }
 
-/* The first combination of bins whose bit, by watch, is set; false: some axis has none. */
+/* The first combination of bins whose bits, by watch, are set; false: some axis has none. */
 bool first_combination(const run *r, const group_plan *g, const uint64_t *bits, combinations *o)
 {
     const int32_t *axes = LIST(PLAN(r), g->axes);
@@ -179,8 +179,8 @@ void make_current(covering *c, const group_plan *g, covered *s, int32_t item)
     s->current++;
 }
 
-/* Count an item that is true, unless it is current, i.e. was counted in this stretch. Pulses do not
- * become current. */
+/* Count an item that is true, unless it is current, that is, was already counted in this stretch. Pulses
+ * do not become current. */
 static void count_item(covering *c, const group_plan *g, covered *s, int32_t item, bool passes, int64_t t)
 {
     if (c->is_current[item] == 0U) {
@@ -193,7 +193,7 @@ static void count_item(covering *c, const group_plan *g, covered *s, int32_t ite
     }
 }
 
-/* Go to the next combination, like an odometer; false: that was the last. */
+/* Go to the next combination, like an odometer; false: there are no more. */
 bool next_combination(combinations *o)
 {
     int32_t k;
@@ -206,7 +206,7 @@ bool next_combination(combinations *o)
     return k >= 0;
 }
 
-/* The number of the item that a combination is. */
+/* The number of the item of a combination. */
 int32_t item_of(const run *r, const group_plan *g, const combinations *o)
 {
     const int32_t *axes = LIST(PLAN(r), g->axes);

@@ -1,6 +1,6 @@
 /* Records of attempts. They are appended as attempts are decided, and sorted at the end of each call by
- * decision, requirement and number, which they mostly are already. rv_trim bounds them, and the
- * attempts that stay undecided, for runs without end. */
+ * decision, requirement and number; mostly they are in that order already. For runs without end, rv_trim
+ * bounds them and the attempts that stay undecided. */
 #include "margins/margins.h"
 #include "networks/network.h"
 #include "notes/notes.h"
@@ -51,8 +51,8 @@ rv_record *next_record(rv_monitor *m)
     return &m->records[m->record_count - 1];
 }
 
-/* Record an attempt, and count it. One in doubt that passes leaves no record: it was met, triggered or
- * not. Counts are right even if memory is too short for the record. */
+/* Record an attempt, and count it. An attempt in doubt that passes leaves no record: its obligation was
+ * met, whether or not it was triggered. Counts are right even if memory is too short for the record. */
 void report(run *r, int32_t index, const attempt *x, uint32_t number, uint8_t verdict,
             uint8_t decision, int64_t t, int64_t note)
 {
@@ -62,7 +62,7 @@ void report(run *r, int32_t index, const attempt *x, uint32_t number, uint8_t ve
     rv_record *record;
     if ((verdict == RV_PASS) && !x->sure) {
         margin_vanished(r->home->monitor, x->record);
-        return; /* met, whether it was triggered or not */
+        return; /* an attempt in doubt that was met */
     }
     if (apart) {
         home *h = r->home;
@@ -129,12 +129,12 @@ void sort_records(rv_monitor *m)
 }
 
 /* Bounded records (rv_keep, rv_trim): per requirement and verdict the newest, with their notes, and per
- * requirement the newest undecidable attempts. Counts stay exact. Trimming copies what stays, so it
- * waits until there is twice as much. */
+ * requirement the newest undecidable attempts. Counts stay exact. Trimming copies everything that stays,
+ * so it waits until there is twice as much. */
 
-/* Slack before the first trim. */
+/* The least number of records before the first trim. */
 #define PATIENCE 32
-/* Marks an attempt to be dropped: no location. */
+/* Marks an attempt to be dropped; not a location. */
 #define DROPPED (-1)
 
 /* An undecidable attempt, for sorting. */
@@ -155,12 +155,12 @@ int rv_keep(rv_monitor *m, int64_t most)
         }
     }
     m->keep = most;
-    m->trim_at = (m->trim_at > PATIENCE) ? m->trim_at : PATIENCE; /* it may be a restored one */
+    m->trim_at = (m->trim_at > PATIENCE) ? m->trim_at : PATIENCE; /* the run may be a restored one */
     return RV_OK;
 }
 
-/* Mark all records but the newest of each requirement and verdict by requirement -1; whether any is
- * marked. */
+/* Mark all records but the newest of each requirement and verdict with requirement -1; returns whether
+ * any is marked. */
 static bool mark_surplus(rv_monitor *m)
 {
     bool some = false;
@@ -268,7 +268,7 @@ static int64_t gather_undecidable(const home *h, undecidable_entry *to)
     return count;
 }
 
-/* Remove the marked attempts of a judge, counting them as inconclusive, which they are for good. */
+/* Remove the marked attempts of a judge, and count them as inconclusive, since they stay undecided. */
 static void drop_undecidable(run *r, int32_t index)
 {
     home *h = r->home;
@@ -285,7 +285,7 @@ static void drop_undecidable(run *r, int32_t index)
         if (h->part->plan->captured > 0) {
             h->inconclusive++;
             h->captured_attempts[at].judge = NULL;
-            touch_run(r); /* it may be released now */
+            touch_run(r); /* the run may be released now */
         } else {
             owner->inconclusive++;
         }

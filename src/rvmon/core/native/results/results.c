@@ -1,4 +1,5 @@
-/* What core.h lets a program read: records, open attempts, counts, verdicts, times; and rv_late. */
+/* The results that core.h lets a program read: records, open attempts, counts, verdicts, times; and
+ * rv_late. */
 #include "networks/network.h"
 #include "notes/notes.h"
 #include "runs/runs.h"
@@ -62,7 +63,7 @@ static rv_record open_record(run *r, int32_t index, const attempt *x, uint32_t n
     return made;
 }
 
-/* Call `take` for the open attempts of a judge; false: it returned false. */
+/* Call `take` for the open attempts of a judge; false: `take` returned false. */
 static bool each_open_of(run *r, int32_t index, rv_take take, void *user)
 {
     const rv_number *captured = (r->part->plan->captured > 0) ? r->captured : NULL;
@@ -103,8 +104,8 @@ void rv_each_open(rv_monitor *m, rv_take take, void *user)
     bracket_open_notes(m, false);
 }
 
-/* Add the counts of a requirement in a part. A part with captured values counts in its home, as its
- * runs come and go; whether its trigger was known is asked of the root and instances, but for an
+/* Add the counts of a requirement in a part. A part with captured values counts in its home, as its runs
+ * come and go. Whether its trigger was known is found in the root and the instances, except for an
  * instance whose key has occurred at no position yet. */
 static void count_home(const home *h, int32_t requirement, rv_counts *counts)
 {
@@ -191,8 +192,8 @@ int32_t rv_fields_of(const rv_monitor *m, int32_t event, int32_t *first)
     return m->plan.field_first[event + 1] - *first;
 }
 
-/* The end of the trace: the last sample or outage, `t` if later, and in a trace with a gap also the
- * last tick that has passed for sure. */
+/* The end of the trace: the last sample or outage, or `t` if that is later, or in a trace with a gap the
+ * last tick that has certainly passed. */
 int64_t rv_end(const rv_monitor *m, int64_t t)
 {
     int64_t end = (m->outage_at > m->last) ? m->outage_at : m->last;
@@ -224,9 +225,9 @@ rv_times rv_times_of(const rv_monitor *m)
     return found;
 }
 
-/* A sample that comes too late is not judged. Requirements that it could have affected are marked, and
- * get PASS or NOT_TRIGGERED no more: those whose judges depend on a leaf of its names, found by one
- * pass up the graph of nodes.
+/* A sample that comes too late is not judged. Requirements that it could have affected are marked, and no
+ * longer get PASS or NOT_TRIGGERED: those whose judges depend on a leaf of its names, found by one pass
+ * up the graph of nodes.
  *
  * Source: SEMANTICS 6 (Too late). */
 
@@ -260,8 +261,8 @@ static void mark_leaves(const run *r, bool event, int32_t local, uint8_t *reads)
     }
 }
 
-/* Propagate the marks up the nodes, which are in order, and mark the requirements that are linked to
- * them. */
+/* Propagate the marks up the nodes, which are in order, and mark the requirements linked to marked
+ * nodes. */
 static void mark_above(const run *r, uint8_t *reads)
 {
     rv_monitor *m = r->home->monitor;

@@ -1,14 +1,14 @@
 /* The state of a run relative to an instant, as words: two runs with equal words behave the same from
- * there on. A search for example runs uses them to recognise states it has explored. So instants become
- * distances from `now`; what is past, and ages beyond the last bound that matters, become equal;
- * attempts in equal states are one, whatever their order. */
+ * there on. A search for example runs uses them to recognise states that it has explored. So instants
+ * become distances from `now`; all past instants, and all ages beyond the last bound that matters, become
+ * equal; and attempts in equal states become one, in any order. */
 #include "results/results.h"
 #include "runs/runs.h"
 #include "windows/windows.h"
 
 #include <string.h>
 
-/* The most words of an attempt: flags, and location and clocks in both readings. */
+/* The most words of an attempt: flags, and the location and clocks of both readings. */
 #define PIECE_MOST (3 + 2 * CLOCKS_MOST)
 
 void put_word(situation *s, int64_t word)
@@ -19,7 +19,7 @@ void put_word(situation *s, int64_t word)
     s->count++;
 }
 
-/* An instant as a distance ahead; all past ones are alike. */
+/* An instant as a distance ahead; all past instants are the same. */
 static void put_ahead(situation *s, int64_t t)
 {
     put_word(s, (t == NEVER) ? NEVER : ((t <= s->now) ? -1 : t - s->now));
@@ -65,7 +65,7 @@ static void put_stretches(situation *s, const stretches *own)
     put_word(s, (own->left ? 1 : 0) + (own->right ? 2 : 0) + (own->growing ? 4 : 0));
 }
 
-/* The members of a window; of an unbounded one, what they add up to. */
+/* The members of a window; for an unbounded window, their sum. */
 static void put_window(situation *s, const node_plan *n, const stretches *own, const tally *x)
 {
     int32_t i;
@@ -88,7 +88,7 @@ static void put_window(situation *s, const node_plan *n, const stretches *own, c
     }
 }
 
-/* Truths and memories of the nodes. */
+/* The truths and memory of the nodes. */
 static void put_formulas(situation *s, const run *r)
 {
     const part_plan *p = r->part->plan;
@@ -141,7 +141,7 @@ static void put_formulas(situation *s, const run *r)
     }
 }
 
-/* Location and ages of an attempt in one reading; ages beyond the last cut are alike. */
+/* Location and ages of an attempt in one reading; all ages beyond the last cut are the same. */
 static void put_token(situation *s, const machine *a, int32_t location, const int64_t *clocks)
 {
     int32_t c;
@@ -196,8 +196,8 @@ static int32_t order_of_words(const int64_t *one, const int64_t *other, int64_t 
     return 0;
 }
 
-/* Sort the records of `width` words from `start` on, drop duplicates, and append how many are left:
- * attempts in equal states are one. By insertion, as there are few. */
+/* Sort the records of `width` words from `start` on, drop duplicates, and append the number left, as
+ * attempts in equal states are one. Insertion sort, as there are few. */
 static void sort_unique(situation *s, int64_t start, int64_t width)
 {
     int64_t held[PIECE_MOST];
@@ -206,7 +206,7 @@ static void sort_unique(situation *s, int64_t start, int64_t width)
     int64_t kept = 0;
     int64_t i;
     if (s->count > s->room) {
-        put_word(s, 0); /* the words are not there, only counted */
+        put_word(s, 0); /* the words were only counted, not written */
         return;
     }
     for (i = 0; i < end; i += width) {
@@ -255,7 +255,7 @@ static void put_judge(situation *s, run *r, int32_t index)
     sort_unique(s, start, width);
 }
 
-/* With a clock: inputs that may be captured at the next tick. */
+/* With a clock: the inputs that may be captured at the next tick. */
 static void put_captured(situation *s, const run *r)
 {
     int32_t i;

@@ -1,5 +1,5 @@
-/* Two records kept beside the judging of attempts: where in time each operator of a formula is known to
- * be true or false (for pictures, and for questions about late arrivals), and how often attempts moved
+/* Two records kept besides the judging of attempts: where in time each operator of a formula is known to
+ * be true or false (for pictures, and for the analysis of late responses), and how often attempts moved
  * between locations of automata. */
 #include "networks/network.h"
 #include "results/results.h"
@@ -29,7 +29,7 @@ static int32_t readings_of(const networks *net)
     return net->parted ? 2 : 1;
 }
 
-/* Extend the letter as it is up to position `last`, time having come to `now`. */
+/* Extend the current letter up to position `last`, when time has come to `now`. */
 static void stay(const form *f, networks *net, int64_t now, int64_t last)
 {
     int32_t i;
@@ -92,8 +92,8 @@ static void keep_truths(run *r, int64_t t)
     }
 }
 
-/* Watch the position at `t`, at which nodes have their truths. stays_busy asks for the next position:
- * for coverage of pulses, and in sampled time because every sample counts. */
+/* Watch the position at `t`, at which nodes have their truths. Sets stays_busy if the next position has
+ * to be visited: for coverage of pulses, and in sampled time because every sample counts. */
 void watch(run *r, int64_t t)
 {
     r->stays_busy = false;
@@ -107,7 +107,7 @@ void watch(run *r, int64_t t)
         keep_truths(r, t);
         r->stays_busy = r->stays_busy || (GAP(r) == 0);
     } else {
-        /* None are kept. */
+        /* No truths are kept. */
     }
 }
 
@@ -141,7 +141,7 @@ int64_t rv_truths(const rv_monitor *m, int32_t operator_number, bool better, boo
 }
 
 /* Moves of attempts between locations: how often, and when first. Automata are shared by all
- * requirements of one shape; the counts belong to each judge. */
+ * requirements of one shape, but each judge has its own counts. */
 
 static bool is_traced(const home *h, int32_t index)
 {

@@ -1,6 +1,6 @@
-/* Examining rows ahead: for up to 64 rows, column by column, which updates may change something.
- * Columns that stay within their interval are recognised by loops without branches, which compilers
- * vectorise; the constant TOGETHER as their length lets them unroll. */
+/* Examining rows ahead: for up to 64 rows, column by column, which updates may change something. Columns
+ * that stay within their interval are recognised by loops without branches, which compilers vectorise;
+ * as their length is the constant TOGETHER, compilers can unroll them. */
 #include "rows/rows.h"
 
 #include <string.h>
@@ -52,8 +52,8 @@ static inline bool bytes_are(const uint8_t *v, int32_t count, uint8_t last)
     return other == 0;
 }
 
-/* Whether no row of a column changes anything; false also if that takes a closer look. Words are
- * compared as bits: equal bits are equal values. */
+/* Whether no row of a column changes anything; false also if rows have to be examined one by one. Words
+ * are compared as bits: equal bits are equal values. */
 static bool stays(const column_watch *w, int64_t first, int32_t count)
 {
     const rv_column *c = w->column;
@@ -85,7 +85,7 @@ static bool stays(const column_watch *w, int64_t first, int32_t count)
     }
 }
 
-/* The rows whose `says` lies between two bounds. */
+/* The rows whose `says` is between two bounds. */
 static uint64_t rows_that_say(const rv_column *c, int64_t first, int32_t count, uint8_t least_said,
                               uint8_t most_said)
 {
@@ -117,7 +117,7 @@ static bool find_turns(const column_watch *w, int64_t first, int32_t count, uint
     return most <= 1U;
 }
 
-/* Go through the updates of a signal one by one, and mark those that may change something. */
+/* Examine the updates of a signal one by one, and mark those that may change something. */
 static void look_for_news(const batch *s, column_watch *w, int64_t first)
 {
     uint64_t left = w->said;
@@ -216,13 +216,13 @@ static uint64_t look_at_column(const batch *s, column_watch *w, int64_t first, i
     }
     if (w->perishable) {
         w->needed = w->said;
-        moved |= is_ageless(s, w) ? (w->said & (~w->said + 1)) : 0U; /* the first of them */
+        moved |= is_ageless(s, w) ? (w->said & (~w->said + 1)) : 0U; /* the first update */
     }
     return moved;
 }
 
-/* Rows that rv_step has to see, whatever they say: stamps not ascending, out of range, or equal to the
- * next row's. */
+/* Rows that rv_step has to see whatever their updates: with stamps that do not ascend, are out of range,
+ * or equal the next row's. */
 static uint64_t odd_rows(const batch *s, int64_t first, int32_t count)
 {
     const int64_t *t = &s->times[first];
@@ -243,8 +243,8 @@ static uint64_t odd_rows(const batch *s, int64_t first, int32_t count)
     return found;
 }
 
-/* Whether rows may be passed over at all: not before the first position, not if samples are stored, not
- * with an outage. */
+/* Whether rows may be passed over at all: not before the first position, if samples are stored, or during
+ * an outage. */
 static bool may_pass_rows(const rv_monitor *m)
 {
     int32_t i;
@@ -294,7 +294,7 @@ void look_ahead(batch *s, int64_t row)
     }
     s->moved = odd_rows(s, row, (int32_t)s->together);
     if (s->counts && (s->together == left)) {
-        s->moved |= UINT64_C(1) << (left - 1); /* the last row is judged: nothing is put off beyond it */
+        s->moved |= UINT64_C(1) << (left - 1); /* the last row is judged, so nothing is left over */
     }
     for (i = 0; i < s->columns; i++) {
         column_watch *w = &s->watches[i];

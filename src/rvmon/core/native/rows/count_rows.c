@@ -1,19 +1,19 @@
-/* Coverage of rows that are passed over. Where bins compare signals with constants and values change at
- * every row, judging each row would evaluate nodes whose only readers are counters. Instead the truth of
- * a node in up to 64 rows is computed at once, as two sets of rows, and stretches of items are counted
- * from these sets. Afterwards the run is brought to the last of the rows (catch_up). */
+/* Coverage of rows that are passed over. If bins compare signals with constants and values change at
+ * every row, judging each row would evaluate nodes that only counters read. Instead the truth of a node
+ * in up to 64 rows is computed at once, as two sets of rows, and stretches of items are counted from
+ * these sets. Afterwards the run is brought to the last of these rows (catch_up). */
 #include "input/input.h"
 #include "results/results.h"
 #include "rows/rows.h"
 
 #include <string.h>
 
-/* A shorter stretch of rows is judged row by row, which takes less than catching up behind it. */
+/* A shorter stretch of rows is judged row by row, which takes less time than catching up after it. */
 #define STRETCH_LEAST 8
 
 /* ---- truths of nodes over rows */
 
-/* The rows at which a number is below a constant; none is NaN. */
+/* The rows at which a number is less than a constant; no number is NaN. */
 static uint64_t rows_below(const double *v, int32_t count, double constant)
 {
     uint8_t one[TOGETHER] = {0};
@@ -90,7 +90,7 @@ static void lay_leaves(const batch *s, const column_watch *w, int64_t row, int32
     }
 }
 
-/* Kleene's connectives, as evaluated() of formulas/graph.c has them, over sets of rows. */
+/* Kleene's connectives over sets of rows, with the same results as evaluated() of formulas/graph.c. */
 static node_rows connected(const run *r, const counting *c, const node_plan *n)
 {
     const int32_t *operands = LIST(PLAN(r), n->operands);
@@ -132,7 +132,7 @@ static node_rows rows_of_item(const run *r, const counting *c, const group_plan 
     return found;
 }
 
-/* Count the stretches of an item that begin in some rows, the first of them at `times[0]`. */
+/* Count the stretches of an item that start in some rows, of which the first is at `times[0]`. */
 static void count_stretches(covering *c, const group_plan *g, covered *s, int32_t item, node_rows own,
                             uint64_t rows, const int64_t *times)
 {
@@ -161,7 +161,7 @@ static void count_stretches(covering *c, const group_plan *g, covered *s, int32_
 }
 
 /* The same for all items of a group: first those that are true in some row, then those that were current
- * before and are not. */
+ * before and are not true in any. */
 static void count_group(const batch *s, run *r, int32_t number, uint64_t rows, const int64_t *times)
 {
     covering *c = r->home->covering;
@@ -230,8 +230,8 @@ bool count_rows(batch *s, int64_t row, int64_t end)
     return true;
 }
 
-/* Bring the run to the last row that was counted: hold its values, and have the next position look at
- * all groups, whose items may be current or not by rows that no node has seen. */
+/* Bring the run to the last row that was counted: hold its values, and let the next position evaluate all
+ * groups, as rows that no node has seen decided which items are current. */
 void catch_up(batch *s)
 {
     run *r = s->m->homes[0].root;

@@ -1,13 +1,13 @@
-/* Which columns of rows are counted in bulk (count_rows.c): those whose values reach nothing but bins,
- * through connectives, in a monitor that only counts (coverage is a plan of its own). Rows at which any
- * other column moves are judged. */
+/* Which columns of rows are counted in bulk (count_rows.c): those whose values reach only bins, through
+ * connectives, in a monitor that only counts (coverage has a plan of its own). Rows at which any other
+ * column changes are judged. */
 #include "input/input.h"
 #include "results/results.h"
 #include "rows/rows.h"
 
 #include <string.h>
 
-/* Whether the monitor does nothing but count bins. */
+/* Whether the monitor only counts bins. */
 static bool only_counts(const rv_monitor *m)
 {
     const part_plan *p = (m->plan.part_count == 1) ? &m->plan.parts[0] : NULL;
@@ -64,7 +64,7 @@ void end_counted(batch *s)
 
 /* ---- which columns are counted */
 
-/* Whether bins of a group are sampled at all rows, and last. */
+/* Whether the bins of a group are sampled at all rows and can last (are not pulses). */
 static bool is_bulk_group(const run *r, const group_plan *g)
 {
     const int32_t *axes = LIST(PLAN(r), g->axes);
@@ -80,7 +80,7 @@ static bool is_bulk_group(const run *r, const group_plan *g)
     return g->occasion < 0;
 }
 
-/* Whether a node is a comparison or a connective, and only groups in bulk read it. */
+/* Whether a node is a comparison or a connective that only groups counted in bulk read. */
 static bool is_bulk_node(const run *r, const counting *c, int32_t place)
 {
     const node_plan *n = &r->part->nodes[place];
@@ -105,7 +105,7 @@ static bool is_bulk_node(const run *r, const counting *c, int32_t place)
     return true;
 }
 
-/* Whether the values of a column are only compared with constants, or are truths themselves. */
+/* Whether the values of a column are only compared with constants, or are themselves truths. */
 static bool is_bulk_column(const batch *s, const column_watch *w)
 {
     const bool real = (w->column->kind == RV_COLUMN_REAL) && (w->how == BY_CONSTANTS);
@@ -128,7 +128,7 @@ static bool is_bulk_column(const batch *s, const column_watch *w)
     return true;
 }
 
-/* Mark the leaves that show the comparisons of a column. */
+/* Mark the leaves of the comparisons of a column. */
 static void mark_counted_leaves(const batch *s, const column_watch *w)
 {
     int32_t atom = 0;
@@ -152,7 +152,7 @@ static bool reads_more(const batch *s, const column_watch *w)
     return more;
 }
 
-/* Mark what the marked leaves reach; operands are numbered below. */
+/* Mark the nodes that marked leaves reach; operands have lower numbers. */
 static void spread_upwards(const run *r, counting *c)
 {
     int32_t i;
@@ -165,7 +165,7 @@ static void spread_upwards(const run *r, counting *c)
     }
 }
 
-/* Mark the nodes that reach something else than bins of groups in bulk. */
+/* Mark the nodes that reach something other than bins of groups counted in bulk. */
 static void spread_downwards(const run *r, counting *c)
 {
     int32_t i;
@@ -180,7 +180,7 @@ static void spread_downwards(const run *r, counting *c)
     }
 }
 
-/* Mark the leaves of the columns that are counted, and all nodes that these reach. */
+/* Mark the leaves of counted columns, and all nodes that they reach. */
 static void mark_counted_nodes(const batch *s, const run *r)
 {
     int32_t i;
@@ -193,7 +193,7 @@ static void mark_counted_nodes(const batch *s, const run *r)
     spread_upwards(r, s->counting);
 }
 
-/* Find the columns that are counted, and the nodes that they reach; every signal is born. */
+/* Find the counted columns and the nodes that they reach; every signal is born. */
 void learn_counted(batch *s)
 {
     counting *c = s->counting;
@@ -221,7 +221,7 @@ void learn_counted(batch *s)
     }
 }
 
-/* Whether rows may be counted now: nothing is lost, and signals are what their last updates said. */
+/* Whether rows may be counted now: nothing is lost, and signals have the values of their last updates. */
 bool may_count(const batch *s)
 {
     const run *r = s->m->homes[0].root;

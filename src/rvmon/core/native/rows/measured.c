@@ -37,7 +37,7 @@ void end_measured(batch *s)
     settle_rows(s, TOGETHER);
 }
 
-/* Settle figures once enough rows were taken together. */
+/* Settle margins once enough rows were taken. */
 void settle_rows(batch *s, int64_t rows)
 {
     rv_monitor *m = s->m;
@@ -50,8 +50,8 @@ void settle_rows(batch *s, int64_t rows)
     }
 }
 
-/* Whether rows that are passed over can be measured: all signals that are born are known, and the part
- * has a single run. */
+/* Whether rows that are passed over can be measured: all born signals are known, and the part has a
+ * single run. */
 bool may_pass_measured(const rv_monitor *m)
 {
     const run *r = m->homes[0].root;
@@ -61,7 +61,7 @@ bool may_pass_measured(const rv_monitor *m)
                && (r->measured_at != -LIMIT) && (r->truth_log == NULL) && !r->part->is_watched);
 }
 
-/* Whether the truth of a node is read for anything but obligations of attempts. */
+/* Whether anything but obligations of attempts reads the truth of a node. */
 static bool is_looked_at(const run *r, int32_t place)
 {
     const plan *p = PLAN(r);
@@ -86,8 +86,8 @@ static bool is_looked_at(const run *r, int32_t place)
 /* Formulas with more levels are examined row by row. */
 #define LEVELS_MOST 4
 
-/* Whether a node and all nodes above it have no memory, and only obligations of judges read them; if
- * `now`, of judges without open attempts. */
+/* Whether a node and all nodes above it have no memory, and only obligations of judges read them; for
+ * `now`, only judges without open attempts. */
 static bool is_unheard(const run *r, int32_t place, bool now, int32_t level)
 {
     const node_plan *n = &r->part->nodes[place];
@@ -112,7 +112,7 @@ static bool is_unheard(const run *r, int32_t place, bool now, int32_t level)
     return true;
 }
 
-/* Iterate over the nodes that show the comparisons of a signal; -1 after the last. */
+/* Iterate over the leaves of the comparisons of a signal; -1 after the last. */
 int32_t next_shown(const run *r, int32_t local, int32_t *atom, int32_t *at)
 {
     const list atoms = r->part->signals[local].on_change[r->at.phase];
@@ -157,7 +157,7 @@ bool is_plain_column(const batch *s, const column_watch *w)
     return true;
 }
 
-/* Whether nothing reads them. */
+/* Whether nothing reads the comparisons of a signal now. */
 bool is_idle_now(const batch *s, const column_watch *w)
 {
     const run *r;
@@ -202,7 +202,7 @@ static const double *reals_of(const batch *s, const atom_plan *a)
     return NULL;
 }
 
-/* Compute the bounds of a leaf in some rows; whether they differ anywhere. */
+/* Compute the bounds of a leaf in some rows; returns whether lower and upper bounds differ anywhere. */
 static bool lay_leaf(const batch *s, const run *r, const margin_shape *shape, int32_t number, int64_t row,
                      int64_t end)
 {
@@ -233,7 +233,7 @@ static bool lay_leaf(const batch *s, const run *r, const margin_shape *shape, in
     return differs;
 }
 
-/* Give the leaves of a judge in some rows to its gauges. */
+/* Pass the leaves of a judge in some rows to its gauges. */
 static void give_rows(const batch *s, run *r, int32_t index, int64_t row, int64_t end)
 {
     const margin_shape *shape = shape_of(r, index);
@@ -268,7 +268,7 @@ static void measure_for(const batch *s, run *r, int32_t index, int64_t row, int6
     if ((i < end - 1) && ((q->asks.first < q->asks.end) || is_kept_up(r, index))) {
         give_rows(s, r, index, i, end - 1);
     }
-    if (is_streamed(r, index)) { /* before any of them is settled */
+    if (is_streamed(r, index)) { /* before any position is settled */
         ask_for_positions(r, index, &s->times[row], end - 1 - row);
     }
     hold_row(s, end - 1);
@@ -278,7 +278,7 @@ static void measure_for(const batch *s, run *r, int32_t index, int64_t row, int6
     }
 }
 
-/* Measure some rows that are passed over, and hold the values of the last one. */
+/* Measure rows that are passed over, and hold the values of the last one. */
 void measure_rows(batch *s, int64_t row, int64_t end)
 {
     run *r = s->m->homes[0].root;

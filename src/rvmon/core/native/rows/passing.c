@@ -1,5 +1,5 @@
-/* Passing over rows that change nothing: only time is moved. What they said reaches the core later:
- * values when rows are examined again (turn_from), staleness before its timer could fire (refresh). */
+/* Passing over rows that change nothing: only time advances. Their updates reach the core later: values
+ * when rows are examined again (turn_from), staleness before its timer could fire (refresh). */
 #include "input/input.h"
 #include "rows/rows.h"
 
@@ -25,7 +25,7 @@ static int64_t last_said(const batch *s, const column_watch *w, int64_t from, in
     return (said != 0U) ? s->first + highest_bit(said) : -1;
 }
 
-/* Store the value of a row in every reader without evaluating anything: it compares as the value before
+/* Store the value of a row in every reader without evaluating anything: it compares as the previous value
  * does, and only comparisons with constants read it. */
 static void hold_in_all(const batch *s, const column_watch *w, int64_t row)
 {
@@ -36,8 +36,8 @@ static void hold_in_all(const batch *s, const column_watch *w, int64_t row)
     }
 }
 
-/* Apply the rows before `row` to signals that go stale: postpone their timers. Alarms may move later by
- * that. */
+/* Apply the rows before `row` to signals that go stale, by postponing their timers. This may postpone
+ * alarms. */
 static void refresh(batch *s, int64_t row)
 {
     bool some = false;
@@ -114,8 +114,8 @@ static int64_t first_due(const batch *s, int64_t row, int64_t end)
     return found;
 }
 
-/* Pass over rows from `row` on that change nothing; returns the first that may, or the end of the
- * block. When an alarm is due, staleness is refreshed first: it may be due to updates passed over. */
+/* Pass over rows from `row` on that change nothing; returns the first row that may, or the end of the
+ * block. When an alarm is due, staleness is refreshed first, as updates passed over may postpone it. */
 int64_t pass_over(batch *s, int64_t row)
 {
     int64_t at = row;
@@ -167,8 +167,8 @@ void make_ready(batch *s, int64_t row, int64_t end)
     catch_up(s);
 }
 
-/* Rows up to `end` were judged. What was examined behind them stays valid, unless a signal became
- * unknown, or attempts that matter to margins began or ended. */
+/* Rows up to `end` were judged. The examination of later rows stays valid, unless a signal became
+ * unknown, or attempts that matter to margins started or ended. */
 void note_judged(batch *s, int64_t end)
 {
     bool other = false;        /* whether rows have to be examined again */
@@ -176,7 +176,7 @@ void note_judged(batch *s, int64_t end)
     s->fresh = end;
     for (i = 0; (s->m->shapes != NULL) && (i < s->columns); i++) {
         const column_watch *w = &s->watches[i];
-        other = other || (w->is_idle != is_idle_now(s, w)); /* attempts may have begun */
+        other = other || (w->is_idle != is_idle_now(s, w)); /* attempts may have started or ended */
     }
     for (i = 0; s->perishes && (i < s->columns); i++) {
         const column_watch *w = &s->watches[i];
@@ -208,7 +208,7 @@ static bool all_with_constants(const run *r, const signal_plan *s, int32_t local
     return true;
 }
 
-/* Which updates of a signal can change something: all runs of a part hold the same inputs as its
+/* Which updates of a signal can change something; all runs of a part hold the same inputs as its
  * root. */
 static int32_t signal_matters(const home *h, const column_watch *w, int32_t local)
 {

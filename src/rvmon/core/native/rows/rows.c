@@ -26,7 +26,7 @@ rv_number number_in(const rv_column *c, int64_t row)
     return made;
 }
 
-/* Whether an event brings a payload in a row. */
+/* Whether an event has a payload in a row. */
 static bool has_payload(const column_watch *w, int64_t row)
 {
     int32_t i;
@@ -49,7 +49,7 @@ static rv_update *next_update(row_sample *made, int32_t name, int32_t says)
     return u;
 }
 
-/* The update of a signal at one instant: the last value in its rows. */
+/* The update of a signal at one instant: the last value in the rows of the instant. */
 static void add_signal(row_sample *made, const column_watch *w, int64_t row, int64_t end)
 {
     int64_t i;
@@ -77,8 +77,8 @@ static void add_payload(row_sample *made, const column_watch *w, int64_t row)
     next_update(made, w->column->name, RV_SAYS_YES)->fields = own;
 }
 
-/* The updates of an event at one instant: one for each payload in its rows. Without a payload, one with
- * the most certain of what they say: YES over UNKNOWN over NO. */
+/* The updates of an event at one instant: one for each payload in the rows of the instant. Without a
+ * payload, one update with the most certain of what the rows say: YES over UNKNOWN over NO. */
 static void add_event(row_sample *made, const column_watch *w, int64_t row, int64_t end)
 {
     int32_t most = -1;
@@ -130,7 +130,7 @@ static bool make_room_for(rv_monitor *m, row_sample *made, int64_t count, int32_
     return true;
 }
 
-/* The end of the rows with the instant of `row`. */
+/* The end of the rows that have the instant of `row`. */
 static int64_t end_of_instant(const batch *s, int64_t row)
 {
     int64_t end = row + 1;
@@ -140,8 +140,8 @@ static int64_t end_of_instant(const batch *s, int64_t row)
     return end;
 }
 
-/* Judge rows [row, end) as one sample. For a single row that was examined only the updates that may
- * change something are passed on; the rest is held by turn_from later. */
+/* Judge rows [row, end) as one sample. For a single row that was examined, only the updates that may
+ * change something are passed on; turn_from later holds the rest. */
 static int judge_instant(batch *s, int64_t row, int64_t end)
 {
     row_sample *made = &s->sample;
@@ -184,7 +184,7 @@ static void begin_column(const batch *s, column_watch *w, const rv_column *c)
     }
 }
 
-/* Allocate what rows are examined with; false: memory is short. */
+/* Allocate the state for examining rows; false: memory is short. */
 static bool begin_rows(batch *s, const rv_column *columns)
 {
     int32_t i;

@@ -1,13 +1,13 @@
-/* Attempts with captured values: each is judged in a run of its own, forked from the one in which it
- * was triggered, where formulas read the values it captured.
+/* Attempts with captured values: each is judged in a run of its own, forked from the run in which it was
+ * triggered, in which formulas read the values that it captured.
  *
- * They are numbered, and reported, at the end of each call: only then is it known which came first over
- * all instances. Of attempts that begin at one instant the one triggered first comes first, then the
- * one whose instance's key occurred first.
+ * Attempts are numbered and reported at the end of each call, as only then their order over all instances
+ * is known. Among attempts that start at one instant, the one triggered first comes first, then the one
+ * whose instance's key occurred first.
  *
- * Captured values may become unknown afterwards: while a trigger is in doubt, an attempt may have begun
- * at any of its positions, with other values. The parent checks that at each of its positions
- * (check_children); from the first difference on (`cut`) LAPSED nodes are TRUE, and the attempt cannot
+ * Captured values may become unknown afterwards: while a trigger is in doubt, the attempt may have
+ * started at any of its positions, with other values. The parent checks that at each of its positions
+ * (check_children). From the first difference on (`cut`) LAPSED nodes are TRUE, and the attempt cannot
  * pass. */
 #include "formulas/formulas.h"
 #include "input/input.h"
@@ -22,7 +22,7 @@ bool starts_here(const run *r, int32_t index)
     return ((r->starters >> index) & 1) != 0;
 }
 
-/* Whether the attempt of a run is over and nothing of it is still to be reported. */
+/* Whether the attempt of a run is over and completely reported. */
 bool is_idle(const run *r)
 {
     return (next_open(r, r->judged, -1) < 0) && !r->judges[r->judged].running && (r->asked == 0);
@@ -34,7 +34,7 @@ static int64_t order_instant(const home *h, int32_t at, bool sure)
     return sure ? h->captured_attempts[at].became : attempt_at(h, at)->triggered;
 }
 
-/* Whether one attempt is to be numbered before another. */
+/* Whether an attempt has to be numbered before another. */
 static bool is_earlier(const home *h, int32_t at, int32_t other, bool sure)
 {
     const int64_t t = order_instant(h, at, sure);
@@ -55,7 +55,7 @@ static int32_t *link_of(home *h, int32_t at, bool sure)
     return sure ? &h->captured_attempts[at].next_sure : &h->captured_attempts[at].next_doubt;
 }
 
-/* Queue an attempt to be numbered: it became sure at `t`, or began in doubt. */
+/* Queue an attempt to be numbered: it became sure at `t`, or started in doubt. */
 void queue_numbering(run *r, int32_t at, int64_t t)
 {
     home *h = r->home;
@@ -93,8 +93,8 @@ static int32_t merged(home *h, int32_t one, int32_t other, bool sure)
     return first;
 }
 
-/* Sort a list of attempts for numbering, returning its head. It mostly is sorted, which is looked for
- * first; else merge sort bottom-up. */
+/* Sort a list of attempts for numbering; returns its head. The list is mostly sorted, which is checked
+ * first; else bottom-up merge sort. */
 static int32_t in_order(home *h, int32_t first, bool sure)
 {
     int32_t lists[32];         /* sorted lists of 2^i attempts, or -1 */
@@ -138,7 +138,7 @@ void queue_report(run *r, int32_t at)
     h->done[1] = at;
 }
 
-/* Number the attempts that began or became sure in this call, then report the decided ones and free
+/* Number the attempts that started or became sure in this call, then report the decided ones and free
  * their slots. */
 void number_and_report(home *h)
 {
@@ -168,8 +168,8 @@ void number_and_report(home *h)
     }
 }
 
-/* Evaluate the `let` values of an attempt that begins at the position of `r`, behind its key in
- * `values`. */
+/* Evaluate the `let` values of an attempt that starts at the position of `r`; in `values` they follow
+ * its key. */
 static void capture(run *r, rv_number *values)
 {
     const list captures = r->part->plan->captures;
@@ -181,7 +181,7 @@ static void capture(run *r, rv_number *values)
     if ((r->home->unknown_values != NULL) && (r->at.dense || (r->at.presence != ARE_THERE))) {
         r->value = r->home->unknown_values; /* in an outage; for windows see left_number */
     }
-    r->captured = values; /* a `let` may use those before it */
+    r->captured = values; /* a `let` may read earlier ones */
     for (i = 0; i < captures.count; i++) {
         values[first + i] = program_value(r, programs[i], NULL);
     }
@@ -189,8 +189,8 @@ static void capture(run *r, rv_number *values)
     r->value = now;
 }
 
-/* Whether an attempt may have begun at the parent's position with other values than it captured: the
- * trigger is in doubt there, and evaluating the captures now gives something else. */
+/* Whether an attempt may have started at the parent's position with other values than it captured: the
+ * trigger is in doubt there, and evaluating the captures now gives other values. */
 static bool may_capture_other(run *r)
 {
     const judge_plan *j = &r->part->judges[r->judged];
@@ -212,7 +212,7 @@ static bool may_capture_other(run *r)
     return false;
 }
 
-/* Have the LAPSED nodes evaluated. */
+/* Mark the LAPSED nodes to be evaluated. */
 void mark_lapsed(run *r)
 {
     const int32_t *lapsed = LIST(PLAN(r), r->part->plan->lapsed);
@@ -246,7 +246,7 @@ static void check_captured(run *r, int64_t t)
     r->watched = r->blurs || ((r->cut < NEVER) && (trigger != IS_FALSE));
 }
 
-/* Link the run of an attempt below the one that it was triggered in. */
+/* Link the run of an attempt below the run in which it was triggered. */
 void adopt(run *parent, run *child)
 {
     child->parent = parent;
@@ -273,8 +273,8 @@ void release_attempt_run(run *r)
     delist(r, true);
 }
 
-/* Start an attempt that captures values: fork the run, evaluate the captures, and bring what depends on
- * them up to date, by replaying the past if past operators do. Only then is the attempt judged. */
+/* Start an attempt that captures values: fork the run, evaluate the captures, and update everything that
+ * depends on them, by replaying the past if past operators do. Only then is the attempt judged. */
 void begin_captured(run *r, int32_t index, int64_t t, int64_t triggered)
 {
     const bool watched = r->part->judges[index].blurs >= 0;
@@ -302,7 +302,7 @@ void begin_captured(run *r, int32_t index, int64_t t, int64_t triggered)
     } else if ((made->at.presence == ARE_THERE) && !made->at.dense) {
         reevaluate_varying(made, t, false);
     } else {
-        /* In an outage everything is unknown. */
+        /* In an outage everything is unknown anyway. */
     }
     adopt(r, made);
     enlist(made, true);
@@ -313,8 +313,8 @@ void begin_captured(run *r, int32_t index, int64_t t, int64_t triggered)
     }
 }
 
-/* Check the captured values of the attempts triggered in this run, at its position `t`; tells in
- * stays_busy whether the next position has to be visited for them. */
+/* Check the captured values of the attempts triggered in this run, at its position `t`; sets stays_busy
+ * if the next position has to be visited for them. */
 void check_children(run *r, int64_t t)
 {
     run *one;
@@ -336,7 +336,7 @@ void check_children(run *r, int64_t t)
     }
 }
 
-/* Forget what occurred at the last position, when captures cannot read it any more. */
+/* Forget what occurred at the last position, once captures can no longer read it. */
 void forget_last(run *r)
 {
     touch_run(r);

@@ -1,7 +1,7 @@
-/* The clock of a run: which instants are positions that have to be looked at, and in which order things
- * happen there. Between samples nothing is evaluated unless a timer is due (`wake` for nodes, `rules`
- * for judges), an atom was valid at one position only, or an episode restarts; `alarm` is the next such
- * instant. So passing time costs what happens in it, not its length. */
+/* The clock of a run: which instants are positions that have to be visited, and the order of work there.
+ * Between samples nothing is evaluated unless a timer is due (`wake` for nodes, `rules` for judges), an
+ * atom was valid at one position only, or an episode restarts; `alarm` is the next such instant. So the
+ * cost of passing time depends on what happens in it, not on its length. */
 #include "formulas/formulas.h"
 #include "input/input.h"
 #include "notes/notes.h"
@@ -50,8 +50,8 @@ void touch_all(run *r, uint8_t what)
     }
 }
 
-/* Register who has to look at the position at `t` even if no node changes there: repeating pulses,
- * attempts that move at every position, and judges whose timer is due. */
+/* Register the judges that have to look at the position at `t` even if no node changes there: those with
+ * repeating pulses, with attempts that move at every position, or with a due timer. */
 static void touch_due_judges(run *r, int64_t t)
 {
     int32_t kept = 0;
@@ -100,14 +100,14 @@ void recheck_all(run *r)
     touch_all(r, TOUCHED_LETTER | TOUCHED_TRIGGER);
 }
 
-/* Run the judges that were touched, in phases over all of them. Episodes take the truth of their
- * trigger before attempts move, since it ends the obligation from this very position on; new attempts
- * start after existing ones have moved, so that those see each position once; and what failed here
+/* Run the judges that were touched, in phases over all of them. Episodes take the truth of their trigger
+ * before attempts move, since it ends the obligation from this very position on. New attempts start after
+ * existing ones have moved, so that each attempt sees each position once. An episode that fails here
  * restarts at the next position at the earliest. */
 void run_judges(run *r, int64_t t)
 {
     int32_t i;
-    r->repeating_count = 0; /* starts below list each judge at most once again */
+    r->repeating_count = 0; /* the starts below list each judge again, at most once */
     if (r->part->is_watched) {
         watch(r, t);
     }
@@ -183,7 +183,7 @@ void visit(run *r, int64_t t)
     if (t >= r->at.ends_at) {
         end_outages(r, t);
     }
-    fire_timers(r, t); /* first: a stale signal's atoms may become momentary ones */
+    fire_timers(r, t); /* first, as atoms of a stale signal may become momentary */
     if (r->at.fading_count + r->at.fresh_count > 0) {
         recheck_fading(r);
     }
@@ -219,7 +219,7 @@ void visit(run *r, int64_t t)
     }
 }
 
-/* Let time come to `t` though it is not known whether `t` is a position, or with which letter: only
+/* Let time come to `t` although it is not known whether `t` is a position, or with which letter: only
  * what time alone decides is decided. */
 void reach(run *r, int64_t t)
 {
@@ -233,8 +233,8 @@ void reach(run *r, int64_t t)
 }
 
 /* Let time pass up to `limit`, visiting the positions on the way at which something can change. If a
- * sample `comes` behind it, networks may leave what they find to that visit. With restarts it stops at
- * each due judge: a failure may be followed at once by a new attempt. */
+ * sample `comes` after it, networks may leave decisions to that visit. With restarts it stops at each due
+ * judge, as a new attempt may follow a failure at once. */
 void pass_time(run *r, int64_t limit, bool comes)
 {
     const int32_t *index = r->part->networked;
@@ -287,7 +287,7 @@ void approach(run *r, int64_t t)
 }
 
 /* Judge the instant of a sample whose updates were taken. With a clock (gap above 1) the sample is seen
- * at the next tick, which is `t` itself if that is one; until then time alone decides. */
+ * at the next tick, which is `t` itself if `t` is a tick; until then time alone decides. */
 void arrive(run *r, int64_t t)
 {
     const int64_t gap = GAP(r);
@@ -311,7 +311,7 @@ void arrive(run *r, int64_t t)
         }
         set_alarm(r, next_position(r));
     } else if (r->margins != NULL) {
-        margins_visit(r, t); /* a distance may change though no truth does */
+        margins_visit(r, t); /* a distance may change although no truth does */
     } else if ((r->at.fresh_count > 0) && (gap == 1)) { /* else they wait for their tick */
         start_pulses(r, t);
     } else {
@@ -346,7 +346,7 @@ void settle_all(run *r, int64_t end, int64_t reached)
     }
 }
 
-/* The next instant at which something is decided if no sample comes. Networks find theirs by search. */
+/* The next instant at which something is decided if no sample comes. Networks search for theirs. */
 int64_t next_decision(run *r)
 {
     int32_t i;

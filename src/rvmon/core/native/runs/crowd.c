@@ -1,7 +1,6 @@
-/* The runs of a part, and which of them a call concerns: those with an alarm, and those whose key the
- * events of the sample name. All others are not looked at, so a call costs what it concerns and not how
- * many instances there are. A signal concerns a run if it leaves the span in which no comparison there
- * changes. */
+/* The runs of a part, and which of them a call concerns: those with an alarm, those with the key of an
+ * event of the sample, and those in which a signal leaves the span in which no comparison changes. All
+ * other runs are not looked at, so the cost of a call does not depend on the number of instances. */
 #include "attempts/attempts.h"
 #include "formulas/formulas.h"
 #include "input/input.h"
@@ -11,15 +10,15 @@
 
 #include <string.h>
 
-/* One of the arrays by id, grown; NULL: memory is short, and the old one stays valid. */
+/* Grow one of the arrays by id; NULL: memory is short, and the old array stays valid. */
 static void *resized(rv_monitor *m, void *old, int32_t room, size_t each)
 {
     int32_t same = room;
     return enlarged(m, old, &same, (int64_t)room + 1, each);
 }
 
-/* Make room for values and spans of signals in one more run of a part that captures values: side by side,
- * so that a sample finds fast which runs it concerns. False: memory is short. */
+/* Make room for the values and spans of signals of one more run, in a part that captures values. They
+ * are side by side, so that a sample quickly finds the runs it concerns. False: memory is short. */
 static bool widen_values(home *h)
 {
     const int32_t signals = h->part->plan->signals.count;
@@ -76,7 +75,7 @@ bool register_run(home *h, run *r)
     return true;
 }
 
-/* Record that a run does something in this call: its alarm is set again at the end of it. */
+/* Record that a run does something in this call, so that its alarm is set again at the end. */
 void touch_run(run *r)
 {
     if (!r->touched_now) {
@@ -136,8 +135,8 @@ void recycle_run(home *h, run *r)
     h->spare = r;
 }
 
-/* The next run: the root and instances first, then the runs of attempts. So a run comes after the one
- * in which its attempt was triggered. */
+/* The next run: the root and instances first, then the runs of attempts, so that a run comes after the
+ * one in which its attempt was triggered. */
 run *following(const home *h, const run *r)
 {
     return ((r == h->last_root) && (r->next == NULL)) ? h->captured : r->next;
@@ -165,14 +164,14 @@ int32_t call_due(home *h, int64_t t)
     return timers_due(&h->alarms, t, h->called);
 }
 
-/* Whether it is the run of an attempt: those come after the runs in which they were triggered. */
+/* Whether a run is that of an attempt. */
 static bool is_of_attempt(const run *r)
 {
     return r->parent != NULL;
 }
 
-/* Call `act` for the called runs, parents before children. Runs that it creates have come to `t`
- * already and are not visited. */
+/* Call `act` for the called runs, parents before children. Runs that it creates have already come to `t`
+ * and are not visited. */
 void for_called(home *h, int32_t count, int64_t t, void (*act)(run *r, int64_t t))
 {
     int32_t pass;
@@ -188,7 +187,7 @@ void for_called(home *h, int32_t count, int64_t t, void (*act)(run *r, int64_t t
     }
 }
 
-/* The key that an event's payload names; NULL: the event concerns every instance. */
+/* The key in the payload of an event; NULL: the event concerns every instance. */
 static const rv_number *key_of(const home *h, const incoming *in)
 {
     const rv_update *u = in->update;
@@ -203,7 +202,7 @@ static const rv_number *key_of(const home *h, const incoming *in)
     return &u->fields[field];
 }
 
-/* Add a run to `called` unless it is in it. */
+/* Add a run to `called` unless it is in it already. */
 static int32_t called_with(home *h, int32_t count, run *r)
 {
     if (r->call == h->call) {
@@ -224,8 +223,8 @@ static int32_t called_with_children(home *h, int32_t count, run *r)
     return found;
 }
 
-/* Whether signals of the inbox may be held by a run without being called: known values, at positions that
- * are there, of which only truths are read. */
+/* Whether runs may hold signals of the inbox without being called: known values, at certain positions,
+ * of which only truths are read. */
 static bool may_be_held(const home *h, const incoming *in)
 {
     const run *root = h->root;
@@ -254,8 +253,8 @@ static int32_t called_by_value(home *h, int32_t count, int32_t local, const rv_n
     return found;
 }
 
-/* Put the called instances in the order of their list, behind the runs of attempts: attempts that they
- * begin are listed in it. */
+/* Put the called instances in the order of their list, after the runs of attempts, as attempts that they
+ * start are listed in that order. */
 static void put_in_order(home *h, int32_t count)
 {
     int32_t kept = 0;
@@ -275,16 +274,16 @@ static void put_in_order(home *h, int32_t count)
     }
 }
 
-/* Put the ids of the runs that the sample or an alarm concerns into `called`; returns how many, -1:
- * all. A key's instance is called with the runs of its attempts; the root always, as others are forked
- * from it; and each run in which a signal may change a comparison. */
+/* Put the ids of the runs that the sample or an alarm concerns into `called`; returns how many, -1: all.
+ * A key's instance is called with the runs of its attempts; the root is always called, as others are
+ * forked from it; and so is each run in which a signal may change a comparison. */
 int32_t call_affected(home *h, int64_t t)
 {
     int32_t count;
     int32_t keyed = 0;
     int32_t i;
     if ((h->monitor->plan.header->gap == 0) && ((h->part->plan->each == 0) || (h->monitor->shapes != NULL))) {
-        return -1; /* every sample is a position, that attempts read, or that is measured */
+        return -1; /* every sample is a position that attempts read, or that is measured */
     }
     for (i = 0; i < h->inbox_count; i++) {
         const bool has_key = key_of(h, &h->inbox[i]) != NULL;

@@ -1,9 +1,9 @@
-/* Outages in sampled time. Where only samples are positions, each tick of an outage may be a position,
- * or may not; every formula is unknown there.
+/* Outages in sampled time. Where only samples are positions, each tick of an outage may or may not be a
+ * position; every formula is unknown there.
  *
- * Past operators take one step for the whole outage, at its first tick. Attempts step at every tick
- * with a letter that is wholly unknown: automata in bulk up to the next timer, a network tick by tick
- * for TICKS_MOST ticks; after these it is given up, and its open attempts stay undecided.
+ * Past operators take one step for the whole outage, at its first tick. Attempts step at every tick with
+ * a completely unknown letter: automata in bulk up to the next timer, a network tick by tick for
+ * TICKS_MOST ticks; then it is given up, and its open attempts stay undecided.
  *
  * Source: SEMANTICS 1 (Outage). */
 #include "formulas/formulas.h"
@@ -13,7 +13,7 @@
 
 #include <string.h>
 
-/* Ticks of one outage that networks are taken through one by one: bounds its cost. */
+/* The most ticks of an outage that networks step through one by one, which bounds the cost. */
 #define TICKS_MOST 1000
 
 int64_t last_position(const rv_monitor *m)
@@ -21,7 +21,7 @@ int64_t last_position(const rv_monitor *m)
     return (m->dense_end > m->last) ? m->dense_end : m->last;
 }
 
-/* Whether a judge has to see each tick, one by one. */
+/* Whether a judge has to step through each tick. */
 static bool needs_each_tick(const run *r, int32_t index)
 {
     return is_networked(r, index) && !r->judges[index].blind
@@ -40,7 +40,7 @@ static bool some_need_each_tick(const run *r)
 }
 
 /* Make all open attempts of networks undecidable. A network that looks back also misses the positions
- * from here on, so nothing can be said of its later attempts either. */
+ * from here on, so its later attempts cannot be decided either. */
 static void give_up_networks(run *r)
 {
     int32_t i;
@@ -89,7 +89,7 @@ void run_begin_dense(run *r, int64_t t)
 }
 
 /* The next tick to visit: the next one that may matter, or `limit`. The second tick of an outage is
- * always visited, as attempts in doubt may differ there; an episode that failed may go on at any. */
+ * always visited, as attempts in doubt may differ there; a failed episode may continue at any tick. */
 static int64_t next_tick(const run *r, int64_t limit)
 {
     const int64_t next = r->at.position + 1;
@@ -135,7 +135,7 @@ void run_pass_dense(run *r, int64_t limit)
     }
 }
 
-/* Leave the outage: behind `until` only samples are positions. The first of them evaluates
+/* Leave the outage: after `until` only samples are positions, and the first sample evaluates
  * everything. */
 void run_end_dense(run *r, int64_t until)
 {
@@ -145,8 +145,8 @@ void run_end_dense(run *r, int64_t until)
     r->at.alarm = -LIMIT;
 }
 
-/* Take updates during the outage: values are held, but the tick may be no position, so occurrences are
- * forgotten at once. */
+/* Take updates during the outage: values are held, but the tick may not be a position, so occurrences
+ * are forgotten at once. */
 void run_take_amid(run *r, int64_t t, const incoming *in, int32_t count)
 {
     int32_t i;
@@ -158,7 +158,7 @@ void run_take_amid(run *r, int64_t t, const incoming *in, int32_t count)
     forget(r);
 }
 
-/* Do something in every run of a part, then end the call there. */
+/* Call `act` for every run of a part, then end the call in the part. */
 static void for_all(home *h, int64_t t, void (*act)(run *r, int64_t t))
 {
     run *one;
@@ -204,8 +204,8 @@ bool make_unknown_values(home *h)
     return h->unknown_values != NULL;
 }
 
-/* An outage begins at `t` in every part. Until then a position is that of the last sample in any part;
- * an event that opens instances may have occurred with any key. */
+/* Start an outage at `t` in every part. The last position before it is that of the last sample of any
+ * part; an event that opens instances may have occurred with any key. */
 bool begin_dense(rv_monitor *m, int64_t t)
 {
     int32_t i;
@@ -232,7 +232,7 @@ bool begin_dense(rv_monitor *m, int64_t t)
     return !m->spoilt;
 }
 
-/* Take all runs through the ticks up to `limit`, and out of the outage if it ends there. */
+/* Take all runs through the ticks up to `limit`, and out of the outage if it ends by then. */
 void pass_dense(rv_monitor *m, int64_t limit)
 {
     int32_t i;
@@ -256,7 +256,7 @@ void end_dense(rv_monitor *m)
     m->dense_until = RV_NO_TIME;
 }
 
-/* Whether `t` lies in the outage; one behind its end ends it. */
+/* Whether `t` lies in the outage; an instant after its end ends the outage. */
 bool is_amid_dense(rv_monitor *m, int64_t t)
 {
     if (t > m->dense_until) {

@@ -1,6 +1,6 @@
 /* A part with all its runs: what each call of core.h does in it. A part without captured values mostly
- * forwards to its one run. Else a call lets time pass in runs with an alarm, creates instances, gives
- * the sample to the runs it concerns, and at its end (rest_all) numbers, reports and releases. */
+ * forwards calls to its one run. Otherwise a call lets time pass in runs with an alarm, creates
+ * instances, gives the sample to the runs it concerns; rest_all then numbers, reports and releases. */
 #include "formulas/formulas.h"
 #include "input/input.h"
 #include "networks/network.h"
@@ -19,7 +19,7 @@ static void come_through(run *r, int64_t t)
     pass_time(r, t, false);
 }
 
-/* Let time pass up to `limit` in all runs, by alarms in order: so decisions are reported in order. */
+/* Let time pass up to `limit` in all runs, in the order of alarms, so that decisions are in order. */
 static void pass_all(home *h, int64_t limit)
 {
     while (timers_next(&h->alarms) <= limit) {
@@ -54,8 +54,8 @@ void untouch_all(home *h)
     h->touched_count = 0;
 }
 
-/* End a call: number and report attempts; release the runs of attempts that are over, then instances,
- * which may be over because of that; set the alarms of all runs touched. */
+/* End a call: number and report attempts; release the runs of attempts that are over, then the instances
+ * that are over because of that; set the alarms of all runs touched. */
 void rest_all(home *h)
 {
     int32_t i;
@@ -81,7 +81,7 @@ void rest_all(home *h)
     untouch_all(h);
 }
 
-/* Release all runs but the root, and reset that to before the first sample. */
+/* Release all runs but the root, and reset the root to before the first sample. */
 static void clear_home(home *h)
 {
     const part_plan *p = h->part->plan;
@@ -129,7 +129,7 @@ static void clear_home(home *h)
     }
 }
 
-/* Begin a run of the monitor; on the first call, create the root. False: memory is short. */
+/* Start a run of the monitor; on the first call, create the root. False: memory is short. */
 bool home_begin(home *h)
 {
     const part_plan *p = h->part->plan;
@@ -177,7 +177,7 @@ void home_mark_absent(home *h, bool event, int32_t local)
 {
     declare_no_source(h->root, event, local);
     if (event && (h->part->plan->each != 0) && (local == h->part->plan->each_event)) {
-        h->root->opens_at = -LIMIT; /* any key may occur at any position, unknown */
+        h->root->opens_at = -LIMIT; /* an occurrence with unknown key is possible at any position */
     }
 }
 
@@ -244,7 +244,7 @@ void home_wait(home *h, int64_t t)
     rest_all(h);
 }
 
-/* Begin or end the outages in the inbox, in a part that captures values: every run hears of them. */
+/* Start or end the outages in the inbox, in all runs of a part that captures values. */
 void lose_inbox(home *h, int64_t t)
 {
     run *one;
@@ -309,7 +309,7 @@ static void come_to_end(run *r, int64_t end)
         }
     } else {
         if (is_apart(r->home) && (last_position(r->home->monitor) > r->at.position)) {
-            forget_last(r); /* a sample that this part does not read is a position, too */
+            forget_last(r); /* a sample of which this part reads nothing is a position, too */
         }
         r->at.position = last_position(r->home->monitor);
     }
@@ -322,7 +322,7 @@ static void begin_at_end(run *r, int64_t end)
         return;
     }
     come_to_end(r, end);
-    /* A key that first occurred behind the last tick has occurred at no position. */
+    /* A key that first occurred after the last tick has occurred at no position. */
     if ((r->rank != 0U) && (r->occurred > r->at.position)) {
         return;
     }
@@ -344,7 +344,7 @@ static bool awaits_end(const home *h)
     return false;
 }
 
-/* Let time come to `end`, which is passed itself, with inputs as they are. */
+/* Let time pass `end`, with inputs as they are. */
 void home_come_to(home *h, int64_t end)
 {
     run *one;
@@ -362,8 +362,8 @@ void home_come_to(home *h, int64_t end)
     }
 }
 
-/* End the trace. First all positions up to `end`; then attempts triggered by the end; then time behind
- * it, which closes windows that end there; only then are undecided attempts settled by policy. */
+/* End the trace. First judge all positions up to `end`; then the attempts triggered by the end; then let
+ * time pass it, which closes windows that end there; only then settle undecided attempts by policy. */
 void home_close(home *h, int64_t end, int64_t reached)
 {
     run *one;

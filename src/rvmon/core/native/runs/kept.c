@@ -1,7 +1,6 @@
-/* Stored samples, for two purposes. A run with captured values may have to replay everything from
- * the first sample, because the past operators of its formulas depend on the values it captured
- * (PART_REPLAYS). And where values are captured at the end of a trace with a clock, samples wait
- * until the tick that sees them. */
+/* Stored samples, for two purposes. A run with captured values may have to replay everything from the
+ * first sample, because its past operators depend on the values that it captured (PART_REPLAYS). And if
+ * values are captured at the end of a trace with a clock, samples wait until the tick that sees them. */
 #include "input/input.h"
 #include "runs/runs.h"
 
@@ -24,8 +23,8 @@ past_update *keep_one(home *h, int64_t t)
     return made;
 }
 
-/* Store the sample in the inbox. A sample without updates is stored, too: in sampled time it is a
- * position. The last update is marked, which delimits samples. */
+/* Store the sample in the inbox, also one without updates: in sampled time it is a position. The last
+ * update is marked, which delimits samples. */
 void keep_updates(home *h, int64_t t)
 {
     rv_monitor *m = h->monitor;
@@ -62,8 +61,8 @@ void keep_updates(home *h, int64_t t)
     }
 }
 
-/* Count the sample at hand as judged, and store it if runs may replay it. While samples wait for a
- * tick it has been stored before. */
+/* Count the current sample as judged, and store it if runs may replay it. If samples wait for a tick, it
+ * was stored before. */
 void keep_given(home *h, int64_t t)
 {
     if (holds_back(h)) {
@@ -77,9 +76,9 @@ void keep_given(home *h, int64_t t)
 }
 
 /* Replay all stored samples in a run with captured values, from the first on. Between samples time
- * passes as it did; outages and the stretches in which every tick may be a position are replayed
- * from the markers stored with the samples. `previous` of the home is what runs read as the sample
- * before, so it follows along and is restored. */
+ * passes as it did; outages, and stretches in which every tick may be a position, are replayed from the
+ * markers stored with the samples. Runs read `previous` of the home as the previous sample, so it is
+ * updated during the replay and then restored. */
 void replay(run *r)
 {
     home *h = r->home;
@@ -136,9 +135,9 @@ void replay(run *r)
     h->previous = previous;
 }
 
-/* Samples that wait for the tick that sees them. With a clock (gap above 1) and values captured at
- * the end of the trace, only the samples up to the last tick count, whichever come behind it. Such
- * a part decides nothing before the end, so the delay is not observable. */
+/* Samples that wait for the tick that sees them. With a clock (gap above 1) and values captured at the
+ * end of the trace, only the samples up to the last tick count, not those after it. Such a part decides
+ * nothing before the end, so the delay is not observable. */
 
 /* Whether a part delays its samples: its first requirement is triggered by the end of the trace. */
 bool holds_back(const home *h)
@@ -197,7 +196,7 @@ static bool recall(home *h, int32_t first)
     return true;
 }
 
-/* Judge the waiting samples before `end` if the tick that sees the last of them is not behind
+/* Judge the waiting samples before `end` if the tick that sees the last of them is not after
  * `limit`. */
 static void give_until(home *h, int64_t limit, int32_t end)
 {
@@ -218,7 +217,7 @@ static void give_until(home *h, int64_t limit, int32_t end)
     h->inbox_count = 0;
 }
 
-/* Judge the waiting samples whose tick is not behind `limit`. */
+/* Judge the waiting samples whose tick is not after `limit`. */
 void give_held(home *h, int64_t limit)
 {
     if (holds_back(h)) {
@@ -226,8 +225,8 @@ void give_held(home *h, int64_t limit)
     }
 }
 
-/* Store the sample at hand until its tick. Waiting samples of earlier ticks are judged first; if
- * `t` is a tick itself, this one is, too. */
+/* Store the current sample until its tick. Waiting samples of earlier ticks are judged first, and this
+ * one, too, if `t` is itself a tick. */
 void hold_back(home *h, int64_t t)
 {
     const int32_t before = h->past_count;

@@ -1,9 +1,9 @@
-/* Instances of `for each`: a key is a value that occurred, an instance the run that judges requirements
- * for it. Keys are found by a hash table with chains. An instance is created when its key first occurs,
- * by forking the root, or by replay. If it later equals the root it is closed (PART_FORGETS), and
- * created again when its key recurs, so memory follows the keys that are active.
+/* Instances of `for each`: a key is a value that occurred, an instance is the run that judges the
+ * requirement for it. Keys are found by a hash table with chains. An instance is created when its key
+ * first occurs, by forking the root or by replay. If it later equals the root it is closed
+ * (PART_FORGETS), and created again when its key recurs, so memory depends on the active keys only.
  *
- * An occurrence with an unknown key may be of any key: it reopens every closed instance, and the root
+ * An occurrence with an unknown key may have any key: it reopens every closed instance, and the root
  * stands for the keys that never occurred. */
 #include "formulas/formulas.h"
 #include "input/input.h"
@@ -12,7 +12,7 @@
 
 #include <string.h>
 
-/* Closed keys remembered, the latest: their rank keeps the order of numbering. */
+/* The most closed keys remembered, the latest ones: their rank keeps the order of numbering. */
 #define MOST_OVER 10000
 #define FIRST_KEYS 16
 
@@ -21,7 +21,7 @@ static int32_t hash_of_key(const rv_number *value, int32_t room)
     uint64_t bits = 0;
     if ((value->kind == RV_REAL) && (value->as.real >= -0x1p63) && (value->as.real < 0x1p63)
         && ((double)(int64_t)value->as.real == value->as.real)) {
-        bits = (uint64_t)(int64_t)value->as.real; /* equal numbers need equal hashes: as that of the
+        bits = (uint64_t)(int64_t)value->as.real; /* equal numbers need equal hashes, so hash it as a
                                                    * whole number */
     } else if (value->kind == RV_REAL) {
         (void)memcpy(&bits, &value->as.real, sizeof bits);
@@ -95,7 +95,7 @@ static int32_t find_key(const home *h, const rv_number *value)
     return at;
 }
 
-/* Add a key that first occurs at `t`; -1: memory is short. */
+/* Add a key that occurs for the first time at `t`; -1: memory is short. */
 static int32_t add_key(home *h, const rv_number *value, int64_t t)
 {
     int32_t at = h->free_key;
@@ -161,7 +161,7 @@ void open_at(run *r, int64_t t)
     }
 }
 
-/* Whether an outage hides, at the tick `t`, the occurrence that opened an instance: then its key is not
+/* Whether an outage hides, at the tick `t`, the occurrence that opened an instance. Then its key is not
  * known to have occurred, and the instance waits for the next occurrence. */
 bool is_opening_lost(run *r, int64_t t)
 {
@@ -175,7 +175,7 @@ bool is_opening_lost(run *r, int64_t t)
     return true;
 }
 
-/* Open an instance whose first occurrence an outage hid: its key occurs, as if first, at `t`. */
+/* Open an instance whose first occurrence an outage hid, as if its key first occurred at `t`. */
 static void reopen_instance(home *h, int32_t at, int64_t t)
 {
     run *r = h->keys[at].open;
@@ -187,8 +187,8 @@ static void reopen_instance(home *h, int32_t at, int64_t t)
     open_at(r, t);
 }
 
-/* Create the instance of a key, known before or new, at the sample at `t`. FRESH: its formulas depend
- * on its key only at the position at hand, so the root's state serves; else the past is replayed. */
+/* Create the instance of a key, known or new, at the sample at `t`. FRESH: its formulas depend on its key
+ * only at the current position, so it can start from the root's state; else the past is replayed. */
 static void open_instance(home *h, int32_t at, int64_t t, bool is_known)
 {
     const part_plan *p = h->part->plan;
@@ -213,7 +213,7 @@ static void open_instance(home *h, int32_t at, int64_t t, bool is_known)
         made->over = h->root->over;
         made->at.gathered = h->root->at.gathered;
         if ((made->truth_log != NULL) && made->at.started) {
-            made->truth_log->begun = made->at.position; /* notes cannot tell what was before */
+            made->truth_log->begun = made->at.position; /* notes have no history before */
         }
         if (made->at.started && (made->at.presence == ARE_THERE)) {
             reevaluate_varying(made, made->at.position, made->at.gathered);
@@ -226,7 +226,7 @@ static void open_instance(home *h, int32_t at, int64_t t, bool is_known)
     enlist(made, false);
 }
 
-/* Create the instances that the sample in the inbox names, before it is judged. */
+/* Create the instances whose keys are in the sample of the inbox, before it is judged. */
 void open_instances(home *h, int64_t t)
 {
     const part_plan *p = h->part->plan;
@@ -253,7 +253,7 @@ void open_instances(home *h, int64_t t)
             } else if ((at >= 0) && (h->keys[at].open->occurred == NEVER)) {
                 reopen_instance(h, at, t);
             } else {
-                /* It exists. */
+                /* The instance exists. */
             }
         } else {
             unknown = true;
@@ -264,7 +264,7 @@ void open_instances(home *h, int64_t t)
     }
 }
 
-/* An occurrence at `t` may be of any key. */
+/* An occurrence at `t` may have any key: open all closed instances. */
 void open_unknown(home *h, int64_t t)
 {
     while ((h->oldest >= 0) && !h->monitor->spoilt) {
@@ -275,7 +275,7 @@ void open_unknown(home *h, int64_t t)
     }
 }
 
-/* What an update of the key's event says to this instance, as an RV_SAYS value; -1: it concerns another
+/* What an update of the key's event says for this instance, as an RV_SAYS value; -1: it has another
  * key. */
 int32_t says_for_instance(const run *r, const rv_update *u)
 {
@@ -290,7 +290,7 @@ int32_t says_for_instance(const run *r, const rv_update *u)
     return same_number(value, &r->captured[0]) ? RV_SAYS_YES : -1;
 }
 
-/* Whether nothing is pending in an instance: no attempt, no run of one, no margin, no repeating
+/* Whether nothing is pending in an instance: no attempt, no run of an attempt, no margin, no repeating
  * pulse. */
 static bool is_quiet(const run *r)
 {
@@ -307,9 +307,9 @@ static bool is_quiet(const run *r)
     return true;
 }
 
-/* Whether an instance equals the root in all but what depends on its key, so that one created later
- * would behave the same. Nodes that depend on it (`varying`, ascending) are evaluated at creation
- * anyway. */
+/* Whether an instance equals the root except for what depends on its key, so that an instance created
+ * later would behave the same. Nodes that depend on the key (`varying`, ascending) are evaluated at
+ * creation anyway. */
 bool equals_root(const run *r)
 {
     const part_plan *p = r->part->plan;
@@ -327,7 +327,7 @@ bool equals_root(const run *r)
         } else if (r->truth[i] != root->truth[i]) {
             return false;
         } else {
-            /* It is equal. */
+            /* This node is equal. */
         }
     }
     for (i = 0; i < p->seen; i++) {

@@ -1,5 +1,5 @@
-/* At which positions a run can change without a sample, and how many failures time alone brings about are
- * passed over there. */
+/* The positions at which a run can change without a sample, and the passing over of failures that time
+ * alone causes. */
 #include "attempts/attempts.h"
 #include "formulas/formulas.h"
 #include "runs/runs.h"
@@ -7,7 +7,7 @@
 /* The first of start, start + step, ... that is not before `t`. */
 static int64_t position_from(int64_t start, int64_t step, int64_t t)
 {
-    return (step == 1) ? t : start + (t - start + step - 1) / step * step; /* to divide takes long */
+    return (step == 1) ? t : start + (t - start + step - 1) / step * step; /* division is slow */
 }
 
 /* The first multiple of the gap from `t` on, for t of either sign. */
@@ -41,13 +41,13 @@ void tidy_failing(run *r)
     r->failing_count = kept;
 }
 
-/* Bounds on how many failures that only time brings about, one after the other, are reported singly
- * while no input comes; the rest of them, but for the last two, is only counted. That bounds the cost
- * of a stamp that leaps by years: `always within 3 s e` fails 500 million times in fifty years.
- * COUNTS_LEFT keeps counts clear of 32 bits. */
+/* While no input comes, at most REPEATS_TOLD successive failures that time alone causes are reported one
+ * by one; the rest, except for the last REPEATS_LEFT, are only counted. That bounds the cost of a stamp
+ * that leaps by years: `always within 3 s e` fails 500 million times in fifty years. COUNTS_LEFT keeps
+ * counts within 32 bits. */
 enum { REPEATS_TOLD = 1000, REPEATS_LEFT = 2, COUNTS_LEFT = 65536 };
 
-/* Whether what the attempts of a run read stays the same without input, except by timers. */
+/* Whether everything that the attempts of a run read stays the same without input, except by timers. */
 static bool is_silent(const run *r)
 {
     return (GAP(r) > 0) && (r->part->plan->captured == 0) && (r->margins == NULL)
@@ -55,13 +55,13 @@ static bool is_silent(const run *r)
            && !r->opening && !r->stays_busy;
 }
 
-/* If an episode would fail and restart very often before the next input, count that instead of doing
- * it; false if another attempt has to begin at `t`.
+/* If an episode would fail and restart very often before the next input, count these failures instead of
+ * executing them; false if another attempt has to start at `t`.
  *
- * The attempt that would begin at `t` finds what the last one found, which began in the same
- * silence: no attempt is open, and nothing that it reads changes before the next timer. So it fails
- * after the same time, and so do all others up to there. Numbers have 32 bits, so the count is
- * capped below that. */
+ * An attempt that starts at `t` finds the same inputs as the last one, which started in the same silence:
+ * no attempt is open, and nothing that it reads changes before the next timer. So it fails after the same
+ * time, and so do all others up to that timer. Numbers have 32 bits, so the count is capped below
+ * that. */
 bool passes_repeats_over(run *r, int32_t index, int64_t t)
 {
     judge *j = &r->judges[index];
@@ -90,7 +90,7 @@ bool passes_repeats_over(run *r, int32_t index, int64_t t)
     return true;
 }
 
-/* The next position at which an attempt may follow a failure though nothing changes. */
+/* The next position at which an attempt may follow a failure although nothing changes. */
 int64_t next_start(const run *r)
 {
     const int64_t step = step_of(r);
@@ -106,8 +106,8 @@ int64_t next_start(const run *r)
     return found;
 }
 
-/* The next position at which something can change without a sample; NEVER. In sampled time only an
- * outage makes one. */
+/* The next position at which something can change without a sample; NEVER: none. In sampled time only an
+ * outage has such positions. */
 int64_t next_position(const run *r)
 {
     const int64_t gap = GAP(r);
@@ -145,7 +145,7 @@ static bool is_restless(const run *r)
 }
 
 /* Set the alarm of a run, given the next position. In sampled time every sample is a position, so
- * whatever is momentary or moves at each position keeps the alarm in the past. */
+ * anything that is momentary or moves at each position keeps the alarm in the past. */
 void set_alarm(run *r, int64_t position)
 {
     if (!r->at.started) {

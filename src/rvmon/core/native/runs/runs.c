@@ -1,5 +1,5 @@
-/* Creating, resetting and forking runs. The arrays of a run lie in one block, so that forking an
- * instance or an attempt is one memcpy, plus what grows: occurrences and the rings of past
+/* Creating, resetting and forking runs. The arrays of a run lie in one block, so forking an instance or
+ * an attempt is one memcpy, plus copies of the arrays that grow: occurrences and the rings of past
  * operators. Released runs are reused. */
 #include "formulas/formulas.h"
 #include "input/input.h"
@@ -11,7 +11,7 @@
 
 #define ALIGNED(size) (((size) + 15U) & ~(size_t)15U)
 
-/* Carves arrays out of a block. Without a block it only adds up their sizes. */
+/* Cuts arrays out of a block; without a block it only adds up their sizes. */
 typedef struct {
     char *block;
     size_t used;
@@ -44,7 +44,7 @@ static size_t cut_block(cutter *c, run *r)
     const int32_t words = (p->nodes.count + 63) / 64;
     size_t copied;
     r->captured = piece(c, p->captured, sizeof *r->captured);
-    if (p->captured == 0) { /* else they stand with those of other runs */
+    if (p->captured == 0) { /* else they are with those of other runs (widen_values) */
         r->value = piece(c, signals, sizeof *r->value);
         r->spans = piece(c, signals, sizeof *r->spans);
     }
@@ -124,9 +124,9 @@ run *new_run(home *h)
     return made;
 }
 
-/* Copy what is allocated outside the block: occurrences and the rings of past operators. The copied
- * rings start at 0, and their hash tables of distinct members are left to be rebuilt. False: memory
- * is short. */
+/* Copy what is allocated outside the block: occurrences and the rings of past operators. The copied rings
+ * start at 0, and their hash tables of distinct members are rebuilt when needed. False: memory is
+ * short. */
 static bool copy_grown(run *made, const run *r)
 {
     rv_monitor *m = r->home->monitor;
@@ -254,8 +254,8 @@ void clear_run(run *r)
     }
 }
 
-/* Reset the judges of a run, which have no attempts then. Letters are sums over the truths of nodes and
- * are summed again. The memory of judges (networks, queues, notes) is kept for reuse. */
+/* Reset the judges of a run, which then have no attempts. Letters are sums over the truths of nodes and
+ * are computed again. The memory of judges (networks, queues, notes) is kept for reuse. */
 void clear_judges(run *r)
 {
     const part_plan *p = r->part->plan;
@@ -309,8 +309,8 @@ void clear_judges(run *r)
     }
 }
 
-/* A run in the same state as another, but without its attempts; NULL: memory is short. The caller
- * sets who may start attempts in it, and links it. */
+/* A run in the same state as another, but without its attempts; NULL: memory is short. The caller sets
+ * which judges may start attempts in it, and links it. */
 run *forked(const run *r)
 {
     home *h = r->home;
@@ -354,7 +354,7 @@ run *forked(const run *r)
     made->watched = false;
     for (i = 0; i < r->part->plan->signals.count; i++) {
         made->value[i] = r->value[i];
-        made->spans[i] = NO_SPAN; /* it compares with numbers of its own */
+        made->spans[i] = NO_SPAN; /* the fork compares with numbers of its own */
     }
     touch_run(made);
     made->stays_busy = r->stays_busy;
@@ -362,8 +362,7 @@ run *forked(const run *r)
     return made;
 }
 
-/* Judge a sample in one run. Does nothing if the run was created by this very sample and has taken
- * it already. */
+/* Judge a sample in one run. Does nothing if this sample created the run, which has then taken it. */
 void give_sample(run *r, int64_t t, const incoming *in, int32_t count)
 {
     const quick_signal *quick;

@@ -1,27 +1,27 @@
 /* The values of a chain of windows, kept as lists of changes (windows.h).
  *
- * The base, and each window over it, has a list of the positions at which its value toggles. Say that
- * an operand has the value that decides its window alone (TRUE of F, FALSE of G) on [s, e]: then the
- * window [low, high] has it on [s - high, e - low]. So these stretches begin earlier, gaps between
- * them shrink, and a gap that is too short vanishes. Hence one change of the base makes one change of
- * each level: it is appended to the list, or it takes the last one away. A letter costs O(depth),
- * however long windows are.
+ * The base, and each window over it, has a list of the positions at which its value toggles. If an
+ * operand has the value that decides its window alone (TRUE for F, FALSE for G) on [s, e], the window
+ * [low, high] has it on [s - high, e - low]. So these stretches start earlier, gaps between them shrink,
+ * and a gap that is too short vanishes. Hence one change of the base makes one change of each level: a
+ * change is appended to the list, or the last one is removed. A letter costs O(depth), however long
+ * windows are.
  *
- * The lists hold what will be if the letter stays; a change that lies ahead is taken back if it does
- * not. What is *known* of a position is a matter of stamps: value_of_chain() finds the positions that
- * decide it, level by level, and the stamp at which the last of them is known.
+ * The lists say what will be if the letter stays; a change that lies ahead is removed if it does not.
+ * When a value is *known* depends on stamps: value_of_chain() finds the positions that decide it, level
+ * by level, and the stamp at which the last of them is known.
  *
- * From the first unknown letter on there are two readings, the unknown taken for the worse and for the
+ * From the first unknown letter on there are two readings, unknown input taken for the worse and for the
  * better. Source: docs/explanation/automata.md, section 4. */
 #include "windows/windows.h"
 
 #include <string.h>
 
-/* Letters between two clean-ups, whose cost they share. */
+/* Number of letters between two clean-ups, over which their cost is spread. */
 #define FORGETS_EVERY 8
 
-/* The stamp of the instant `over` ticks behind a position, as time comes there, or as its letter is
- * known. */
+/* The stamp of the instant `over` ticks after a position: when time comes there or, for `letter`, once
+ * its letter is known. */
 static int64_t stamp_of(const chaining *g, int64_t position, int64_t over, bool letter)
 {
     int64_t t;
@@ -38,7 +38,7 @@ static const operator_plan *window_at(const chaining *g, int32_t level)
     return &g->f.nodes[g->windows[level - 1]];
 }
 
-/* The first position whose window reaches `position`; of samples, the first one that is near enough. */
+/* The first position whose window reaches `position`; in sampled time, the first sample near enough. */
 static int64_t reached_from(const chaining *g, int64_t position, int64_t distance)
 {
     changes *stamps = &g->c->stamps;
@@ -50,9 +50,9 @@ static int64_t reached_from(const chaining *g, int64_t position, int64_t distanc
     return change_at(stamps, (i < stamps->count) ? i : stamps->count - 1);
 }
 
-/* Carry a change of the base at a position through all levels; `value`: its value from there on. All
+/* Carry a change of the base at a position through all levels; `value` is its value from there on. All
  * levels change in the same direction. On each level either a change is appended at `position`
- * (`added`), or the last one is removed, and was at `position`. */
+ * (`added`), or the last one, which was at `position`, is removed. */
 static void note_change(const chaining *g, chain_reading *w, int64_t at, bool value)
 {
     rv_monitor *m = g->f.monitor;
@@ -66,11 +66,11 @@ static void note_change(const chaining *g, chain_reading *w, int64_t at, bool va
         changes *own = &w->levels[level];
         const bool decides = (n->turned != 0) ? !value : value;
         int64_t start;
-        if (decides == added) { /* a stretch of the deciding value begins here, or is taken back */
+        if (decides == added) { /* a stretch of the deciding value starts here, or is removed */
             start = reached_from(g, position, n->high);
             if (added) {
                 added = !((own->count > 0) && (last_change(own) >= start));
-            } else { /* it may have been merged with the one before, which now ends again on its own */
+            } else { /* it may have been merged with the stretch before, which now ends on its own */
                 position = (given->count > 0) ? moved(last_change(given), -n->low) : start - 1;
                 added = position >= start;
                 start = position;
@@ -106,7 +106,7 @@ void begin_reading(const chaining *g, chain_reading *w, int64_t position, int32_
     w->start = position;
 }
 
-/* Ticks after which a position of the whole chain is known at the latest. */
+/* Number of ticks after which a position of the whole chain is known at the latest. */
 static int64_t reach_of(const chaining *g)
 {
     int64_t reach = 0;
@@ -117,8 +117,8 @@ static int64_t reach_of(const chaining *g)
     return reach;
 }
 
-/* Drop changes and samples that no position still to be known can depend on: those further back than
- * the chain reaches. `position`: of the letter at hand. */
+/* Drop changes and samples on which no unknown position can depend: those further back than the chain
+ * reaches. `position` is that of the current letter. */
 void forget_before(const chaining *g, int64_t position)
 {
     int64_t start;
@@ -164,7 +164,7 @@ static bool readings_agree(const chaining *g)
            && (a->start == b->start);
 }
 
-/* The first unknown letter: the better reading begins as a copy of the worse one. */
+/* At the first unknown letter, the better reading starts as a copy of the worse one. */
 static void split_readings(const chaining *g)
 {
     const chain_reading *w = &g->c->readings[0];
@@ -191,7 +191,7 @@ bool is_known(const uint8_t *letter)
     return true;
 }
 
-/* Take another letter, from a position on. */
+/* Take a new letter, from a position on. */
 void note_letter(const chaining *g, int64_t position, const uint8_t *letter)
 {
     chain *c = g->c;
@@ -221,9 +221,9 @@ void note_letter(const chaining *g, int64_t position, const uint8_t *letter)
 
 /* The value of the chain at a position if the letter stays, and the stamp at which it is known.
  *
- * From the outermost window in: if a position of the window has the deciding value, the first such one
- * is what has to be known; else all have to be, so the last one of the window, and the window has to
- * be over (`over`). `position` ends at the one of the base that is known last. */
+ * From the outermost window inwards: if a position of the window has the deciding value, the first such
+ * position has to be known; else all have to be known, so the last one of the window, and the window has
+ * to be over (`over`). At the end `position` is the position of the base that is known last. */
 static bool value_of_chain(const chaining *g, chain_reading *w, int64_t at, int64_t *stamp)
 {
     changes *stamps = &g->c->stamps;
@@ -261,7 +261,7 @@ static bool value_of_chain(const chaining *g, chain_reading *w, int64_t at, int6
     return value;
 }
 
-/* The first position at or behind another at which a value is `wanted`; NEVER_KNOWN: none if the letter
+/* The first position at or after another at which a value is `wanted`; NEVER_KNOWN: none if the letter
  * stays. */
 static int64_t first_from(changes *c, int64_t position, bool wanted)
 {
@@ -272,7 +272,7 @@ static int64_t first_from(changes *c, int64_t position, bool wanted)
     return (i < c->count) ? change_at(c, i) : NEVER_KNOWN;
 }
 
-/* The first position at or behind another at which the chain is false and not excused. */
+/* The first position at or after another at which the chain is false and not excused. */
 int64_t first_failure(const chaining *g, chain_reading *w, int64_t position)
 {
     int64_t at = position;
@@ -305,8 +305,8 @@ static int64_t last_mattering(const chaining *g, chain_reading *w, int64_t behin
     return end - 1;
 }
 
-/* The stamp at which it is known that the chain held, or was excused, on [first, behind). As it is
- * known in order, that of the last position that matters. */
+/* The stamp at which it is known that the chain held, or was excused, on [first, behind). As values
+ * become known in order, it is the stamp of the last position that matters. */
 int64_t known_between(const chaining *g, chain_reading *w, int64_t first,
                              int64_t behind)
 {
@@ -319,7 +319,7 @@ int64_t known_between(const chaining *g, chain_reading *w, int64_t first,
 }
 
 /* The value of the whole formula for an attempt at a position, and the stamp at which it is known: the
- * chain there, or the chain at every position until `ends` holds (there, too). */
+ * chain there, or the chain at every position until, and including, the one where `ends` holds. */
 bool outcome_of(const chaining *g, chain_reading *w, int64_t at, int64_t *stamp)
 {
     int64_t position = at;

@@ -1,8 +1,8 @@
 /* Attempts that a chain of windows judges (windows.h), and rings of changes.
  *
- * A letter that changes updates the chain; then attempts are judged, the oldest first, until one is
- * still open: with one reading the younger ones are, too. So a letter costs the attempts that it
- * decides, and O(depth * log changes) for the first open one, at whose stamp the judge is due next. */
+ * A new letter updates the chain; then attempts are judged, the oldest first, until one is still open:
+ * with one reading the younger ones are then open, too. So a letter costs the attempts that it decides,
+ * and O(depth * log changes) for the first open one, at whose stamp the judge is due next. */
 #include "windows/windows.h"
 
 #include <string.h>
@@ -27,7 +27,7 @@ chaining chaining_of(run *r, int32_t index)
     return g;
 }
 
-/* A new chain; NULL: memory is short. A judge has it made at its first letter. */
+/* A new chain; NULL: memory is short. A judge makes it at its first letter. */
 chain *made_chain(const chaining *g)
 {
     arena *a = &g->f.monitor->memory;
@@ -91,8 +91,8 @@ static int64_t instant_of_stamp(int64_t stamp)
     return (stamp - (stamp & 1)) / 2;
 }
 
-/* Judge one attempt by what is known as of the stamp `limit`; false: it is decided. `due`: the stamp at
- * which it will be if the letter stays. */
+/* Judge one attempt by what is known at the stamp `limit`; false: it is decided. `due` becomes the stamp
+ * at which it is decided if the letter stays. */
 static bool judge_in_chain(chaining *g, int32_t at, int64_t limit, int64_t *due)
 {
     attempt *x = attempt_at(g->r->home, at);
@@ -102,7 +102,7 @@ static bool judge_in_chain(chaining *g, int32_t at, int64_t limit, int64_t *due)
     int64_t stamp;
     bool worse = false;
     bool better = true;
-    /* A reading that has failed, or passed, is not asked again: its changes may be dropped. */
+    /* A reading that has failed, or passed, is not queried again, as its changes may be dropped. */
     if (x->location != FAILED) {
         worse = outcome_of(g, &g->c->readings[0], position, &worse_stamp);
     }
@@ -131,7 +131,7 @@ static bool judge_in_chain(chaining *g, int32_t at, int64_t limit, int64_t *due)
     return true;
 }
 
-/* Judge the attempts by what is known as of a stamp, and set when the judge is due. */
+/* Judge the attempts by what is known at a stamp, and set when the judge is due. */
 static void judge_chain_attempts(chaining *g, int64_t limit)
 {
     int64_t next_due = NEVER_KNOWN;
@@ -168,7 +168,7 @@ static void read_letter(const chaining *g, uint8_t *letter)
     letter[EXCUSED] = (own->excused < 0) ? 0 : leaf_bits(g, &g->f.nodes[own->excused]);
 }
 
-/* Begin at a position: windows reach ahead only, so what was before does not matter. */
+/* Start at a position: windows only reach ahead, so earlier positions do not matter. */
 static void begin_chain(const chaining *g, int64_t position, const uint8_t *letter)
 {
     chain *c = g->c;
@@ -204,7 +204,7 @@ void chain_visit(run *r, int32_t index, int64_t t)
         return;
     } else {
         if (g.c->parted) {
-            judge_chain_attempts(&g, 2 * t); /* readings that ended, before their changes are dropped */
+            judge_chain_attempts(&g, 2 * t); /* before the changes of decided readings are dropped */
         }
         if (g.sparse) {
             add_change(g.f.monitor, &g.c->stamps, position);
@@ -228,7 +228,7 @@ void chain_visit(run *r, int32_t index, int64_t t)
     judge_chain_attempts(&g, 2 * t + 1);
 }
 
-/* Let time come to `t`; `is_position`: the letter stays up to there, else it is not known at `t`. */
+/* Let time come to `t`. `is_position`: the letter stays up to `t`, else it is not known at `t`. */
 void chain_pass(run *r, int32_t index, int64_t t, bool is_position)
 {
     chaining g = chaining_of(r, index);
@@ -259,8 +259,8 @@ bool chain_enter(run *r, int32_t index, int32_t at, int64_t t)
     return true;
 }
 
-/* Whether an open attempt counts as TRUE at the end of the trace: what is required until something ends
- * it has not failed at any position up to there, and all of that is known. */
+/* Whether an open attempt counts as TRUE at the end of the trace: its obligation lasts until something
+ * ends it, and it is known not to have failed at any position up to there. */
 bool chain_outlasts(run *r, int32_t index, const attempt *x, int64_t end, int64_t reached)
 {
     chaining g = chaining_of(r, index);
@@ -290,7 +290,7 @@ int64_t last_change(const changes *c)
     return change_at(c, c->count - 1);
 }
 
-/* Append a change; the ring doubles as needed. Memory short: the run is spoilt. */
+/* Append a change; the ring doubles as needed. If memory is short, the run is spoilt. */
 void add_change(rv_monitor *m, changes *c, int64_t position)
 {
     if (c->count == c->room) {
@@ -346,11 +346,11 @@ void clear_changes(changes *c, bool value)
     c->begun = value;
 }
 
-/* Changes that are tried one by one from the last query on; beyond, halving is faster. */
+/* Number of changes tried one by one from the last query on; beyond that, bisection is faster. */
 #define NEAR 4
 
-/* How many changes there are up to a position. Queries mostly ask for the end of the list, or a little
- * behind the one before (`asked`); only then halving, without a branch that would be mispredicted. */
+/* The number of changes up to a position. Most queries are for the end of the list, or a little after
+ * the last query (`asked`); the others bisect, without a branch that would be mispredicted. */
 int32_t changes_until(changes *c, int64_t position)
 {
     int32_t low = (c->asked < c->count) ? c->asked : 0;
@@ -382,13 +382,13 @@ int32_t changes_until(changes *c, int64_t position)
     return low;
 }
 
-/* The value behind the first `count` changes. */
+/* The value after the first `count` changes. */
 bool value_behind(const changes *c, int32_t count)
 {
     return c->begun != ((count & 1) == 1);
 }
 
-/* Drop the changes before a position; the value before the rest follows from how many they were. */
+/* Drop the changes before a position; the value before the rest follows from their number. */
 void drop_changes(changes *c, int64_t position)
 {
     while ((c->count > 0) && (change_at(c, 0) < position)) {
