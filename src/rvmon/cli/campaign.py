@@ -166,7 +166,7 @@ def names_of(listed: str | None, known: Sequence[str], what: str) -> tuple[str, 
         return tuple(known)
     names = tuple(dict.fromkeys(names_in(listed)))
     if not names:
-        raise UnknownNameError(f"--{what} names none: there are {', '.join(known)}")
+        raise UnknownNameError(f"--{what} is empty: there are {', '.join(known)}")
     for name in names:
         if name not in known:
             raise UnknownNameError(f"no {what} `{name}`: there are {', '.join(known)}")

@@ -49,7 +49,7 @@ def write_campaign(
     """
     campaign = results.plan.campaign
     if begun(campaign, path) != before:
-        raise RvmonError("--evidence: requirements have changed meanwhile: run it again")
+        raise RvmonError("--evidence: requirements have changed meanwhile: run the command again")
     tests = {_name(played.job): played.job.test for played in results.played}
     about = evidence.About(
         name=campaign.name,

@@ -75,9 +75,9 @@ def conduct(
     Temporary folders are entered in `stack`.
     """
     if arguments.shard is not None and not arguments.out:
-        raise RvmonError("--shard keeps its results in a folder: name it with --out")
+        raise RvmonError("--shard writes its results to a folder: name it with --out")
     if arguments.shard is not None and arguments.evidence:
-        raise RvmonError("--evidence is of all tests: give it to the command that joins the shards")
+        raise RvmonError("--evidence covers all tests: give it to the command that joins shards")
     folder = output_folder(arguments.out) if arguments.out else None
     before = campaign_text.dated_files(folder) if folder is not None else {}
     with busy("generating tests"):
@@ -112,12 +112,12 @@ def conduct(
     with bar("tests", planned) as show:
         results = execute(chosen, jobs=jobs, kept=kept, progress=show, spool=spool)
     if kept is not None and kept.shard is not None and len(results.played) == planned:
-        warn(f"{kept.path}: the same command without --shard joins what lies beside it")
+        warn(f"{kept.path}: the same command without --shard joins the shards in this folder")
         # The folder is written by the command that joins the shards.
         return written(results, specs, None, arguments, again)
     conducted = written(results, specs, folder, arguments, again, spool)
     if texts is not None and results.cut_short:
-        warn(f"{arguments.evidence}: not written: evidence is of whole campaigns")
+        warn(f"{arguments.evidence}: not written: evidence needs a complete campaign")
     elif texts is not None:
         write_campaign(arguments.evidence, texts, results, conducted.summary, specs, same)
     if folder is not None and (remark := campaign_text.left_over(folder, before)):
@@ -183,8 +183,8 @@ def written(
         )
     if otherwise:
         warn(
-            f"played again, these came out otherwise: {', '.join(otherwise)}: a run must "
-            "depend on its test alone, and its random numbers on the test's seed"
+            f"played again, these gave other results: {', '.join(otherwise)}: a run must depend "
+            "only on its test, and its random numbers only on the test's seed"
         )
     return Conducted(results, summary, tables)
 
@@ -292,7 +292,7 @@ def shrink_file(campaign: Campaign, arguments: Namespace) -> int:
     left = removed(job.test, small)
     say_json(to_json(small).decode().removesuffix("\n"))
     if not smallest.is_minimal:
-        warn("it was ended early: an even smaller test may fail alike")
+        warn("shrinking was stopped early: an even smaller test may fail in the same way")
     if not job.test.removable:
         kind = type(job.test).__name__
         warn(f"`{kind}` names nothing in `removable`: only values can be simpler")

@@ -90,7 +90,7 @@ def _bound(path: str, checked: CheckedSpec) -> list[str]:
         if (bound := bounds.get(name)) is not None:
             fed.setdefault((bound.topic, str(bound.value)), []).append(name)
     return remarks + [
-        f"{path} feeds {' and '.join(names)} with one and the same: {value} of {topic}"
+        f"{path} feeds {' and '.join(names)} with the same field: {value} of {topic}"
         for (topic, value), names in fed.items()
         if len(names) > 1
     ]

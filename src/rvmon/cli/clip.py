@@ -83,7 +83,7 @@ def _places(arguments: argparse.Namespace) -> tuple[str | None, str | None]:
     if out is not None and out.endswith(reading.ENDING) and case is None:
         out, case = None, out
     if out is None and case is None:
-        raise RvmonError("name where it goes to: -o FILE, or --reproducer FILE.rvcase")
+        raise RvmonError("name the output: -o FILE, or --reproducer FILE.rvcase")
     if case is not None and not case.endswith(reading.ENDING):
         raise RvmonError(f"cannot write {case}: the name of a reproducer ends in {reading.ENDING}")
     return out, case
@@ -122,7 +122,7 @@ def _report(spec: Spec, arguments: argparse.Namespace, trace: str, name: str) ->
         return judged.report
     if not judged.before:
         raise RvmonError(judged.error)
-    warn(f"warning: {judged.error}; what was decided before that counts")
+    warn(f"warning: {judged.error}; attempts decided before that count")
     return report_of([name], judged.before)
 
 
@@ -198,6 +198,6 @@ def _warn_of_another(
     else:
         why = "it depends on earlier data: a longer --before"
     warn(
-        f"warning: {attempt.name} is {attempt.verdict} in {data} and not so in "
+        f"warning: {attempt.name} is {attempt.verdict} in {data}, but not in "
         f"{Path(place).name}, where {attempt.requirement} is {verdict}; {why} may fix it"
     )

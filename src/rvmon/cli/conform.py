@@ -71,7 +71,7 @@ def _compare(
     later = sum(action.t > end for action in actions)
     if later:
         what = "is" if later == 1 else "are"
-        warn(f"{path}: {counted(later, 'later action')} {what} not looked at, because of --until")
+        warn(f"{path}: {counted(later, 'later action')} {what} ignored, because of --until")
     actions = [action for action in actions if action.t <= end]
     return conform(
         network,
@@ -93,7 +93,7 @@ def _some(shown: frozenset[str], path: str, labels: tuple[str, ...]) -> frozense
         known = f"its actions are {', '.join(labels)}" if labels else "no edge of it has a label"
         raise TraceError(
             f"{path}: nothing in it is an action of the model: {known}; "
-            "name columns or events after them, or name with --observe which would be seen"
+            "name columns or events after them, or list with --observe those that would be seen"
         )
     return shown
 

@@ -63,8 +63,8 @@ def _earlier(arguments: argparse.Namespace, coverage: Coverage) -> Coverage:
         return read([arguments.compare])
     if arguments.campaign is None:
         raise RvmonError(
-            f"--compare {arguments.compare} is a campaign: name which other one it is compared "
-            "with, by --campaign"
+            f"--compare {arguments.compare} is a campaign: name the one to compare it with by "
+            "--campaign"
         )
     return _campaign(coverage, arguments.compare)
 
@@ -115,7 +115,9 @@ def _code(summary: Summary, arguments: argparse.Namespace) -> int:
     if arguments.require is not None:
         wrong |= summary.is_empty or summary.share < arguments.require
         if summary.is_empty:
-            warn("--require: nothing is to be covered: no model was declared, or all weights are 0")
+            warn(
+                "--require: there is nothing to cover: no model was declared, or all weights are 0"
+            )
     if arguments.strict:
         wrong |= bool(summary.not_fine)
         wrong |= summary.comparison is not None and bool(summary.comparison.lost)

@@ -251,7 +251,7 @@ def compare_expected(judged: Judged, case: Case) -> None:
     attempts = [] if judged.report is None else judged.report.attempts
     found = next((attempt for attempt in attempts if attempt.name == case.attempt), None)
     if found is None or (found.verdict, found.decided) != (case.verdict, case.decided):
-        now = "there is none now" if found is None else f"it is {found.verdict} now"
+        now = "now there is no such attempt" if found is None else f"it is {found.verdict} now"
         made = f"as rvmon {case.rvmon} (law {case.law}) decided"
         warn(f"warning: {case.attempt} was {case.verdict}, {made}: {now}")
     else:

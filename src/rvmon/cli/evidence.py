@@ -44,7 +44,7 @@ def run_evidence(arguments: argparse.Namespace) -> int:
     if differ:
         say("It does not hold.")
         return 1
-    say("What could be checked holds." if unchecked else "It holds.")
+    say("All that could be checked holds." if unchecked else "It holds.")
     return 2 if unchecked else 0
 
 
@@ -56,7 +56,7 @@ def _verify(
     intact = set(kept.items)
     for name, sha256 in _shown(about.recordings):
         if not is_recording(name):
-            unchecked.append(f"{name} is not there")
+            unchecked.append(f"{name} is missing")
         elif evidence.sha256_of(*map(Path, files_of(name))) != sha256:
             differ.append(f"{name} is not the recording that was evaluated")
         else:
@@ -69,12 +69,12 @@ def _verify(
     if is_same:
         _expect_derived(kept)
     else:
-        unchecked.append("the matrix and the words of reasons: another rvmon wrote them")
+        unchecked.append("the matrix and the wording of reasons: another rvmon wrote them")
     again: Again = _judged_again
     if about.judging is None:
         if arguments.campaign is None:
             program = f"{' '.join(about.command[:1])} evidence {arguments.file}"
-            unchecked.append(f"tests: the program that played them does: `{program}`")
+            unchecked.append(f"tests: the program that played them checks them: `{program}`")
             return
         from rvmon.cli.campaign_evidence import as_kept, played_again, programs_of
 
@@ -111,7 +111,7 @@ def _expect_derived(kept: evidence.Kept) -> None:
     try:
         derived = evidence.derived_entries(kept.about, specs, kept.items)
     except ValueError as error:
-        raise evidence.TamperedError(f"a verdict is none: {error}") from None
+        raise evidence.TamperedError(f"an unknown verdict: {error}") from None
     if not derived.items() <= kept.entries.items():
         raise evidence.TamperedError("the matrix does not follow from requirements and verdicts")
 
@@ -166,7 +166,7 @@ def begun(
     hashes: dict[str, str] = {}
     for trace in traces:
         if not is_recording(trace) or shown_path(trace) in hashes:
-            raise RvmonError(f"--evidence: {trace}: name files that are there, each once")
+            raise RvmonError(f"--evidence: {trace}: name existing files, each once")
         hashes[shown_path(trace)] = evidence.sha256_of(*map(Path, files_of(trace)))
     return *evidence.texts_of({"": arguments.spec}, arguments.binding), hashes
 
@@ -183,7 +183,7 @@ def write_run(
         RvmonError: an input has changed since `begun`, or the file cannot be written.
     """
     if begun(arguments, list(before[2])) != before:
-        raise RvmonError("--evidence: an input has changed meanwhile: run it again")
+        raise RvmonError("--evidence: an input has changed meanwhile: run the command again")
     entries, (main, *binding), recordings = before
     how = msgspec.convert(arguments, evidence.Judging, from_attributes=True)
     about = evidence.About(

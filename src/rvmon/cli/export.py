@@ -51,7 +51,7 @@ def _model_text(arguments: argparse.Namespace) -> str:
 
     if arguments.to not in _OF_MODELS:
         raise RvmonError(
-            f"--to {arguments.to} is of specifications: {arguments.subject} is a model"
+            f"--to {arguments.to} is for specifications: {arguments.subject} is a model"
         )
     constants = model_constants_of(arguments.const)
     network = load_network(arguments.subject, constants=constants)

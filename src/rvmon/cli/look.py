@@ -67,7 +67,7 @@ def run_init(arguments: argparse.Namespace) -> int:
     output = arguments.output or Path(arguments.data).with_suffix(".rv").name
     if output != "-" and Path(output).exists() and not arguments.force:
         raise RvmonError(
-            f"error: {output} is there already: give another place with -o, or --force to overwrite"
+            f"error: {output} exists already: name another file with -o, or --force to overwrite it"
         )
     with busy(f"reading {arguments.data}"):
         profile = profile_of(arguments.data, arguments.time)
@@ -95,18 +95,17 @@ def _print_binding(arguments: argparse.Namespace) -> int:
     with busy(f"reading {arguments.data}"):
         proposal = propose(spec.checked, messages_of(arguments.data))
     words = shlex.join(["rvmon", "run", arguments.spec, arguments.data, "--binding"])
-    say(f"# Proposed: look it over. {words} THIS_FILE")
+    say(f"# Proposed: review it. {words} THIS_FILE")
     say(proposal.text, end="")
     if proposal.unmatched:
         names = ", ".join(f"`{name}`" for name in proposal.unmatched)
-        warn(f"warning: what feeds {names} is left open: nothing in {arguments.data} is clearly it")
+        where = f"nothing in {arguments.data} matches clearly"
+        warn(f"warning: the source of {names} is left open: {where}")
     for name in proposal.unlabelled:
-        warn(
-            f"warning: `{name}` is a number in {arguments.data}: say which `labels` stand for which"
-        )
+        warn(f"warning: `{name}` is a number in {arguments.data}: say in `labels` what each means")
     for group in proposal.shared:
         names = " and ".join(f"`{name}`" for name in group)
-        warn(f"warning: {names} are fed by one and the same field: is that meant?")
+        warn(f"warning: {names} are fed by the same field: is that intended?")
     return int(bool(proposal.unmatched or proposal.unlabelled))
 
 
@@ -117,8 +116,8 @@ def _write_campaign(folder: Path, *, force: bool) -> int:
     existing = [name for name in files if (folder / name).exists()]
     if existing and not force:
         raise RvmonError(
-            f"error: {folder / existing[0]} is there already: name another folder, or --force to "
-            "overwrite"
+            f"error: {folder / existing[0]} exists already: name another folder, or --force to "
+            "overwrite it"
         )
     try:
         folder.mkdir(parents=True, exist_ok=True)

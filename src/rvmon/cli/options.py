@@ -22,7 +22,7 @@ _LEAST = 512  # megabytes; with less, C libraries abort while loading, without a
 
 def _megabytes(text: str) -> int:
     if (number := positive(text)) < _LEAST:
-        message = f"expected at least {_LEAST} MB, which Python and its libraries take, not {text}"
+        message = f"expected at least {_LEAST} MB, which Python and its libraries need, not {text}"
         raise argparse.ArgumentTypeError(message)
     return number
 
@@ -211,7 +211,7 @@ def _limited(megabytes: int | None) -> Iterator[None]:
     try:
         import resource
     except ImportError:
-        raise RvmonError("--max-memory: this system sets no limits: leave it out") from None
+        raise RvmonError("--max-memory: this system has no such limit: leave it out") from None
     before = resource.getrlimit(resource.RLIMIT_AS)
     most = megabytes << 20
     if before[1] != resource.RLIM_INFINITY:

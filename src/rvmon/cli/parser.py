@@ -105,7 +105,9 @@ def shard(text: str) -> Shard:
     number, slash, count = text.partition("/")
     if slash and positive(number) <= positive(count):
         return Shard(int(number), int(count))
-    raise argparse.ArgumentTypeError(f"expected the second of four as 2/4, not {text}")
+    raise argparse.ArgumentTypeError(
+        f"expected a share such as 2/4, the second of four, not {text}"
+    )
 
 
 def number_or_folder(text: str) -> int | Path:

@@ -112,7 +112,7 @@ def _entries(path: Path, heading: bytes) -> list[_Entry]:
     lines = journal.entries(path)
     if lines and lines[0] != heading:
         raise RvmonError(
-            f"{path} was begun with another specification, other options or another rvmon: "
+            f"{path} was started with another specification, other options or another rvmon: "
             "leave out --resume to start again"
         )
     try:

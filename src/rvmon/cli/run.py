@@ -36,8 +36,8 @@ def run_run(arguments: argparse.Namespace) -> int:
     with unpacked(arguments) as case:
         if case is not None:
             if arguments.traces or arguments.evidence:
-                fix = "name no other, and keep no evidence of it"
-                raise RvmonError(f"{given} brings its recording along: {fix}")
+                fix = "name no other, and leave out --evidence"
+                raise RvmonError(f"{given} contains its recording: {fix}")
             arguments.traces = [case.recording]
         return _run(arguments, case, given)
 
@@ -125,7 +125,7 @@ def _judged(
     if arguments.out is not None:
         write_results(arguments.out, spec, recordings)
     if arguments.shard is not None:
-        warn(f"{arguments.out}: --resume in the place of --shard joins what lies beside it")
+        warn(f"{arguments.out}: --resume instead of --shard joins the shards in this folder")
     elif begun is not None:
         begun.remove()
     return recordings
@@ -134,9 +134,9 @@ def _judged(
 def _share(arguments: argparse.Namespace, traces: Sequence[str]) -> list[str]:
     """The recordings of this shard; `--out` is changed to the file of the shard."""
     if arguments.out is None:
-        raise RvmonError("--shard leaves its verdicts beside those of all: name the file by --out")
+        raise RvmonError("--shard writes next to the file of all verdicts: name that with --out")
     if arguments.evidence is not None:
-        raise RvmonError("--evidence is of all recordings: give it to the command with --resume")
+        raise RvmonError("--evidence covers all recordings: give it to the command with --resume")
     arguments.out = str(arguments.shard.name(Path(arguments.out)))
     share: list[str] = arguments.shard.of(traces)
     if not share:
@@ -225,7 +225,7 @@ def _show_known(known: KnownFailures, reports: Sequence[Report]) -> None:
     for report in reports:
         for name, why in known.expected(report).items():
             if report.verdicts[name] is Verdict.FAIL:
-                warn(f"{name} in {report.trace} failed as is known: {why}")
+                warn(f"{name} in {report.trace} failed as known: {why}")
     for remark in known.remarks(reports):
         warn(f"warning: {remark}")
 

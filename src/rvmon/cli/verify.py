@@ -194,7 +194,9 @@ def check_spec(
     bindings = {name: text.strip() for name, text in named_values("--bind", arguments.bind, form)}
     for name in bindings.keys() - spec.checked.signals.keys():
         known = ", ".join(spec.checked.signals) or "none"
-        raise UnknownNameError(f"--bind {name}: no signal of that name is declared: {known}")
+        raise UnknownNameError(
+            f"--bind {name}: no signal of that name is declared: there are {known}"
+        )
     observations = []
     for observation in observe(
         network, spec.checked, bindings=bindings, budget=budget, watch=watch

@@ -138,7 +138,7 @@ def _watch_topics(arguments: argparse.Namespace, spec: Spec, shown: Output) -> L
     followed = None
     if arguments.sim_time:
         if arguments.realtime is not None:
-            raise RvmonError(f"--realtime: the time is that of {CLOCK} already: leave it out")
+            raise RvmonError(f"--realtime: the time comes from {CLOCK} already: leave it out")
         followed = SimulatedClock()
     live, hear = _live_here(arguments, spec, shown, followed or _own_clock())
     feed = MessageFeed(live, spec.schema, clock=followed)
@@ -160,7 +160,7 @@ def _watch_topics(arguments: argparse.Namespace, spec: Spec, shown: Output) -> L
     with live, source, shown:
         if followed is not None:
             shown.note(
-                f"the time is that of {CLOCK}: nothing is evaluated before its first message"
+                f"the time comes from {CLOCK}: nothing is evaluated before its first message"
             )
         _follow(arguments, live, shown)
     return live
@@ -172,12 +172,12 @@ def _domain_of(source: str) -> int | None:
         return None
     domain = source.partition(":")[2] or os.environ.get("ROS_DOMAIN_ID", "0")
     if not domain.isdecimal() or int(domain) > _LAST_DOMAIN:
-        raise RvmonError(f"{source}: expected a domain of DDS, 0 to {_LAST_DOMAIN}")
+        raise RvmonError(f"{source}: expected a DDS domain, 0 to {_LAST_DOMAIN}")
     return int(domain)
 
 
-_ONE_ROBOT = "a domain or a master is one robot; start one for each"
-_NO_CLOCK = "there is no topic /clock; lines with stamps (t, t_ns, --time) bring their time along"
+_ONE_ROBOT = "a domain or a master is one robot; start one watch for each"
+_NO_CLOCK = "there is no topic /clock; lines with stamps (t, t_ns, --time) have their own time"
 _STAMPS = "a binding (--binding) names the field of the stamp"
 _TOPICS = ("ros1:", "ros2:", "dds:")
 _SOURCES: dict[str, tuple[Callable[..., Live], dict[str, str]]] = {
@@ -252,9 +252,9 @@ def _follow(
                 arguments.ages = _ages(arguments.spec, *ages)
                 try:
                     _replace(arguments, live)
-                    shown.note(f"{changed[0]} has changed: the new one holds from here on")
+                    shown.note(f"{changed[0]} has changed: the new one applies from here on")
                 except (SpecError, RvmonError) as error:
-                    shown.note(f"{error}\nThe former specification stays in use.")
+                    shown.note(f"{error}\nThe previous specification stays in use.")
             shown.show(live)
     except KeyboardInterrupt:
         shown.note("ended")
@@ -275,8 +275,8 @@ def _replace(arguments: argparse.Namespace, live: Live) -> None:
         ]
         if fresh or spec.schema.binding != known.binding:
             raise RvmonError(
-                f"{f'`{min(fresh)}` is new, and ' if fresh else ''}topics are chosen as the watch "
-                "begins: end it, and begin another"
+                f"{f'`{min(fresh)}` is new, and ' if fresh else ''}topics are chosen when the "
+                "watch starts: end it, and start another"
             )
     live.replace_spec(spec)
 
@@ -293,7 +293,7 @@ def _is_recording(path: str) -> bool:
 
 
 def _ages(spec: str, *others: str) -> dict[str, tuple[int, int] | None]:
-    """The ages of a specification, the files it imports and some others, by path."""
+    """The results of `_age` for a specification, its imports, and `others`, by path."""
     from rvmon.reproducer import imported_files
 
     files = [spec, *others]

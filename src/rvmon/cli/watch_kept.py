@@ -32,13 +32,13 @@ def refuse_others(arguments: argparse.Namespace) -> None:
     """Refuse options that do not go with `--state`."""
     refuse_over([arguments.state], [arguments.spec, arguments.source, arguments.binding])
     if "://" in arguments.source or arguments.source.startswith(("ros1:", "dds:")):
-        raise RvmonError("--state: a run that is kept is of lines: a pipe or a file")
+        raise RvmonError("--state: only lines can be kept: from a pipe or a file")
     for name in ("realtime", "robot", "publish", "sim_time"):
         if getattr(arguments, name) not in (None, False):
             option = f"--{name.replace('_', '-')}"
             raise RvmonError(
-                f"--state and {option}: a run that is kept is of one robot whose lines have stamps "
-                f"and are evaluated at them: leave {option} out"
+                f"--state and {option}: a kept run has one robot, whose lines have stamps and are "
+                f"evaluated at these: leave {option} out"
             )
     if arguments.format == "view":
         raise RvmonError("--state and --format view: verdicts are numbered lines: text or json")
@@ -79,7 +79,7 @@ def watch_kept(
         kept = monitor.monitor.verdicts.keys()
         if kept != spec.monitor(only=only).verdicts.keys():
             raise RvmonError(
-                f"--state {arguments.state}: its run evaluates {', '.join(kept)} alone: give the "
+                f"--state {arguments.state}: its run evaluates only {', '.join(kept)}: give the "
                 "same --only, or name another --state"
             )
         if monitor.taken:
@@ -140,7 +140,7 @@ def _behind_taken(
     """
     taken, (count, known) = monitor.taken, monitor.mark
     other = RvmonError(
-        f"{arguments.source} is not the file of which {taken:,} lines were evaluated: "
+        f"{arguments.source} is not the file whose first {taken:,} lines were evaluated: "
         f"name another --state, or delete {arguments.state} to start again"
     )
     number = check = 0

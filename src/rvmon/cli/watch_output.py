@@ -196,7 +196,7 @@ def print_status(driver: Driver, printer: Printer, height: int | None = None) ->
         _print_robot(robot, driver.spec, rows, printer, is_cut=height is not None)
     _print_rest([fold(robot.verdicts.values()) for robot in robots[most:]], "robots", printer)
     if not robots:
-        printer.line("nothing has come yet")
+        printer.line("no input yet")
 
 
 def _need(verdict: Verdict) -> int:

@@ -36,7 +36,7 @@ def run_why(arguments: argparse.Namespace) -> int:
     with reading.unpacked(arguments) as case:
         if case is not None:
             if arguments.attempt is not None:
-                raise RvmonError("a reproducer brings its recording along: name only an attempt")
+                raise RvmonError("a reproducer contains its recording: name only an attempt")
             arguments.attempt = arguments.trace or case.attempt
             arguments.trace = case.recording
         return _explain(arguments, None if case is None else name_of(case.spec))

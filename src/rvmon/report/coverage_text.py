@@ -30,7 +30,7 @@ def print_overview(summary: Summary, printer: Printer) -> None:
         print_table(table, printer)
     for heading, places in (
         ("illegal hits:", summary.illegal),
-        ("hit, and said to be unreachable:", summary.contradicted),
+        ("hit, but declared unreachable:", summary.contradicted),
     ):
         hits = [f"{summary.item_name(place)}  {summary.hit_text(place)}" for place in places]
         _print_list(printer, heading, hits, style="bold red")

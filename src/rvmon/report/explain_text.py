@@ -253,7 +253,7 @@ def _impossible(requirement: Requirement, can: Possible) -> Mapping[Verdict, str
 
 def _not_found(search: Found) -> str:
     tried = f"none found in {search.runs} short runs"
-    return f"{tried}, all that there are to try" if search.exhausted else f"{tried}; not decided"
+    return f"{tried}, which are all there are" if search.exhausted else f"{tried}; not decided"
 
 
 def _names_read(compiled: CompiledRequirement) -> frozenset[str]:
@@ -286,7 +286,7 @@ def analysis_lines(analysis: Analysis, spec: CheckedSpec) -> list[str]:
     if examination.sets_undecided:
         lines.append(f"not decided for {examination.sets_undecided} larger sets")
     if examination.whole_sets is not None:
-        lines.append(f"sets of more than {examination.whole_sets} were not all looked at")
+        lines.append(f"not all sets of more than {examination.whole_sets} were examined")
     if not examination.implications_done:
-        lines.append("not all were looked at whether others imply them")
+        lines.append("not all were examined for being implied by others")
     return lines

@@ -23,7 +23,7 @@ from rvmon.verdicts.known_failures import NONE_KNOWN, KnownFailures
 from rvmon.verdicts.report import Report
 
 _BROKEN = "cannot be evaluated"
-_KNOWN = "fail as is known"
+_KNOWN = "fail as known"
 ASKED = "name, failed requirement, severity"  # the placeholder of the search field of the index
 
 _GROUPS = {

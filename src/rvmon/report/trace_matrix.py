@@ -41,7 +41,7 @@ def rows_by_item(verdicts: bytes) -> dict[str, list[Row]]:
     """
     rows = csv.reader(io.StringIO(verdicts.decode("utf-8"), newline=""), strict=True)
     if tuple(next(rows, ())) != VerdictRow._fields:
-        raise ValueError("the columns of the verdicts are others")
+        raise ValueError("the table of verdicts has other columns")
     by_item: dict[str, list[Row]] = {}
     for row in rows:
         by_item.setdefault(row[0], []).append(dict(zip(VerdictRow._fields, row, strict=True)))

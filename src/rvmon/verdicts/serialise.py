@@ -123,7 +123,7 @@ def decode(text: str | bytes) -> tuple[ReportJson, list[Attempt]]:
             for shown in entry.attempts
         ]
     except (msgspec.DecodeError, msgspec.ValidationError, UnicodeDecodeError) as error:
-        raise TraceError(f"this is no report of rvmon: {error}") from None
+        raise TraceError(f"this is not a report of rvmon: {error}") from None
     return document, attempts
 
 

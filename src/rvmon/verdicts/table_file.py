@@ -116,7 +116,7 @@ def _form(path: str | Path) -> tuple[_Written, tuple[str, ...]]:
 
 def refuse(path: str | Path, forms: Iterable[str]) -> NoReturn:
     """Raise the error for a file whose suffix is not one of `forms`."""
-    raise RvmonError(f"{path}: verdicts are kept in files that end in {', '.join(forms)}")
+    raise RvmonError(f"{path}: verdicts are stored in files that end in {', '.join(forms)}")
 
 
 _KEPT = ("recording", "requirement", "attempt", "verdict", "reason", "error")
@@ -146,7 +146,7 @@ def read_results(path: str | Path) -> list[VerdictRow]:
         raise RvmonError(f"cannot read {path}: {error.strerror or error}") from None
     except _FAULTS as error:
         cause = (str(error).splitlines() or [type(error).__name__])[0]
-        raise RvmonError(f"{path} holds no verdicts of rvmon: {cause}") from None
+        raise RvmonError(f"{path} contains no verdicts of rvmon: {cause}") from None
 
 
 def _checked(values: Iterable[Any]) -> VerdictRow:

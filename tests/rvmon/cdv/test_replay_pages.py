@@ -47,7 +47,7 @@ def test_a_system_that_is_not_repeatable_is_told(campaign, tmp_path, spec, capsy
 
     robots = {"toy": cdv.Robot(Moody, spec)}
     assert main(campaign(("moody", {}), robots=robots), ["run", "--out", "out"]) == 0
-    assert "played again, these came out otherwise: moody" in capsys.readouterr().err
+    assert "played again, these gave other results: moody" in capsys.readouterr().err
 
 
 def test_pages_of_all_runs_need_no_second_play(campaign, tmp_path, spec):
@@ -74,7 +74,7 @@ def test_pages_of_all_runs_need_no_second_play(campaign, tmp_path, spec):
     [
         (["run", "--strategy", "luck"], "no strategy `luck`: there are climbs"),
         (["run", "--robot", "r"], "no robot `r`: there are toy"),
-        (["run", "--strategy", ","], "names none"),
+        (["run", "--strategy", ","], "is empty"),
         (["run", "--spec", "gone.rv"], "gone.rv"),
         (["run", "--tests", "0"], "at least 1"),
         (["run", "--tests", "many"], "at least 1"),

@@ -83,7 +83,7 @@ def test_what_finds_nothing_is_told(words, tmp_path, says):
     told = says(1, "init", words[1], "--for", words[0])
     lines = ("# Nothing was found for `zapped` (event):", "# [bind.zapped]")
     assert "\n".join([*lines, '# topic = "…"', '# value = "…"\n']) in told.out
-    assert "what feeds `zapped` is left open" in told.err
+    assert "the source of `zapped` is left open" in told.err
 
 
 def test_check_says_what_a_binding_leaves_out(words, tmp_path, capsys):
@@ -120,16 +120,16 @@ def test_a_run_goes_on_from_bags_that_were_judged(words, tmp_path, monkeypatch, 
     interrupted(monkeypatch, command)
     assert "2 of 3 recordings were evaluated before" in capsys.readouterr().err
     binding.write_text(binding.read_text().replace('unit = "rad"', 'unit = "rad" '))
-    assert "begun with another specification" in says(2, *command).err
+    assert "started with another specification" in says(2, *command).err
 
 
 def test_two_names_on_one_field_are_told(words, tmp_path, capsys):
     two = SPEC.replace("signal heading ", "signal robot_speed : real [m/s]\nsignal heading ")
     (tmp_path / "base.rv").write_text(two)
     main(["init", words[1], "--for", words[0]])
-    assert "`speed` and `robot_speed` are fed by one and the same field" in capsys.readouterr().err
+    assert "`speed` and `robot_speed` are fed by the same field" in capsys.readouterr().err
     field = 'topic = "/base/odom"\nvalue = "twist.twist.linear.x"\nunit = "m/s"\n'
     path = tmp_path / "two.toml"
     path.write_text(f"[bind.speed]\n{field}[bind.robot_speed]\n{field}")
     assert main(["check", words[0], "--binding", str(path)]) == 0
-    assert "feeds speed and robot_speed with one and the same" in capsys.readouterr().out
+    assert "feeds speed and robot_speed with the same field" in capsys.readouterr().out

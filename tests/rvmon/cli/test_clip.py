@@ -82,7 +82,7 @@ def test_an_episode_is_cut_around_what_failed(base, capsys):
 def test_what_a_past_operator_remembers_needs_more_before(base, capsys):
     assert clip("R3#1", "--before", "2s", "-o", "b.csv") == 1
     told = capsys.readouterr().err
-    assert "R3#1 is P in a.csv and not so in b.csv, where R3 is F" in told
+    assert "R3#1 is P in a.csv, but not in b.csv, where R3 is F" in told
     assert "a longer --before" in told
     assert clip("R3#1", "--before", "5s", "-o", "b.csv") == 0
 
@@ -98,7 +98,7 @@ def test_what_ends_too_early_is_said(base, capsys):
 def test_a_recording_that_breaks_off_can_be_cut(base, capsys):
     (base / "a.csv").write_text("\n".join([*ROWS, "broken"]))
     assert clip("R1#1", "--after", "2s", "-o", "b.csv") == 0
-    assert "what was decided before that counts" in capsys.readouterr().err
+    assert "attempts decided before that count" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("name", ["b.csv", "b.jsonl", "b.parquet"])

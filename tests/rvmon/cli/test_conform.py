@@ -57,7 +57,7 @@ def test_tolerance_and_end(folder, says):
     says(0, "conform", model, good, "--until", "60", "--observe", "pressed")
     shown = says(0, "conform", model, bad, "--until", "6")
     assert "conforms; 1 action explained" in shown.out
-    assert "1 later action is not looked at" in shown.err
+    assert "1 later action is ignored" in shown.err
 
 
 def test_an_empty_recording_may_be_a_quiet_run(folder, says):

@@ -71,7 +71,7 @@ def test_what_cannot_be_hit_stands_apart(door, capsys):
     with Database.open(door) as database:
         database.exclude("gaze", "yes", "nobody looks")
     _, lines = shown(capsys, door)
-    at = lines.index("hit, and said to be unreachable:")
+    at = lines.index("hit, but declared unreachable:")
     assert lines[at + 1] == "gaze: yes 3 hits by 2 tests, first calm-1 at 1 s"
 
 
@@ -221,4 +221,4 @@ def test_an_empty_database_is_shown_and_reaches_no_share(tmp_path, capsys, says)
     assert code == 0
     assert lines[0] == f"{path} 0 tests"
     assert "no holes" in lines
-    assert "nothing is to be covered" in says(1, "cover", path, "--require", "0%").err
+    assert "there is nothing to cover" in says(1, "cover", path, "--require", "0%").err

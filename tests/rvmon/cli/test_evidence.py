@@ -145,7 +145,7 @@ def test_recordings_that_are_others_or_gone_are_told(base, capsys):
     assert "evaluated again: 2 of 3" in told
     (base / "b.csv").unlink()
     code, told = verify(capsys)
-    assert (code, "b.csv is not there" in told) == (2, True)
+    assert (code, "b.csv is missing" in told) == (2, True)
     (base / "b.csv").write_bytes(kept)
     assert verify(capsys)[0] == 0
 

@@ -48,7 +48,7 @@ def test_it_is_mutated(written):
 
 
 def test_nothing_is_overwritten(written, says):
-    assert "is there already" in says(2, "init", "--campaign", written).err
+    assert "exists already" in says(2, "init", "--campaign", written).err
     assert main(["init", "--campaign", str(written), "--force"]) == 0
     assert main(["init"]) == 2
     assert main(["init", "some.csv", "--campaign", "there"]) == 2

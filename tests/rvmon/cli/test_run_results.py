@@ -138,7 +138,7 @@ def test_many_attempts_have_the_rows_that_few_have(folder):
 def test_another_run_does_not_go_on_with_it(folder, says):
     words = ["run", "s.rv", "good.csv", "good.csv", "--out", "v.csv", "--resume"]
     journal.begin(folder / "v.csv.unfinished", [b"another"])
-    assert "was begun with another specification" in says(2, *words).err
+    assert "was started with another specification" in says(2, *words).err
     assert main([*words[:-1]]) == 0
 
 
@@ -151,12 +151,12 @@ def test_known_failures_fail_no_run(folder, capsys, says):
     )
     words = ["run", "s.rv", "good.csv", "bad.csv", "--known", "known.toml"]
     assert main([*words, "--junit", "j.xml", "--coverage", "c.db", "--report", "pages"]) == 0
-    assert "R1 in bad.csv failed as is known: worn (until 2999-01-01)" in capsys.readouterr().err
+    assert "R1 in bad.csv failed as known: worn (until 2999-01-01)" in capsys.readouterr().err
     suite = ET.parse(folder / "j.xml").getroot()[1]  # noqa: S314 - ours
     assert (suite.get("failures"), suite.get("skipped")) == ("0", "2")
     assert suite[0][0].get("message").startswith("known: worn (until 2999-01-01); F: attempt 1")
     index = (folder / "pages" / "index.html").read_text()
-    assert "1 fail as is known, 1 not triggered" in index
+    assert "1 fail as known, 1 not triggered" in index
     assert main(["cover", "c.db", "--strict"]) == 0
     known.write_text(known.read_text().replace("2999", "1999", 1))
     assert "R1 (worn) was known to fail until 1999-01-01, and still fails" in says(1, *words).err

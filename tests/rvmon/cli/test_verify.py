@@ -84,6 +84,6 @@ def test_suites(lamp, says):
 def test_names_that_the_specification_or_the_model_lacks_are_told(lamp, capsys):
     model, spec = lamp
     assert main(["verify", model, "--spec", spec, "--bind", "light=Lamp.on"]) == 2
-    assert "no signal of that name is declared: lit" in capsys.readouterr().err
+    assert "no signal of that name is declared: there are lit" in capsys.readouterr().err
     assert main(["verify", model, "--spec", spec]) == 1
     assert "BAD: not expressible: the network has no signal `lit`" in capsys.readouterr().out

@@ -58,7 +58,7 @@ def test_what_a_program_greets_with_does_not_choose_the_clock(door, says, before
     ("words", "why", "end"),
     [
         ("--time stamp:ms", "there is no time `stamp`", "0 samples, 2 lost"),
-        ("--robot id", "there is no name of a robot in `id`", "nothing has come yet"),
+        ("--robot id", "there is no name of a robot in `id`", "no input yet"),
     ],
 )
 def test_a_time_or_a_robot_that_is_named_is_in_each_line(says, words, why, end):
@@ -129,8 +129,10 @@ def test_a_change_that_names_what_nobody_listens_to_is_not_taken_up(door, says, 
     monkeypatch.setattr("rvmon.cli.watch.time.sleep", sleep)
     said = says(1, "watch", "door.rv", "dds:7", "--format", "text")
     said = " ".join((said.out + said.err).split())
-    assert "`other` is new, and topics are chosen as the watch begins" in said
-    assert "The former specification stays in use. door.rv has changed: the new one holds" in said
+    assert "`other` is new, and topics are chosen when the watch starts" in said
+    assert (
+        "The previous specification stays in use. door.rv has changed: the new one applies" in said
+    )
 
 
 def test_a_change_of_an_imported_file_is_taken_up(door, says, monkeypatch):
@@ -155,8 +157,8 @@ def test_a_change_of_an_imported_file_is_taken_up(door, says, monkeypatch):
     monkeypatch.setattr("rvmon.cli.watch.time.sleep", sleep)
     said = says(1, "watch", "main.rv", "dds:7", "--format", "text")
     said = " ".join((said.out + said.err).split())
-    assert said.count("The former specification stays in use") == 2
-    assert said.count("times.rv has changed: the new one holds") == 1
+    assert said.count("The previous specification stays in use") == 2
+    assert said.count("times.rv has changed: the new one applies") == 1
 
 
 @pytest.mark.slow
@@ -207,7 +209,7 @@ def test_a_view_of_much_fits_and_begins_with_what_failed():
 
 @pytest.mark.process
 def test_a_change_of_the_specification_is_taken_up_and_ctrl_c_is_an_end(door):
-    """While the stream is open; a change that is wrong is told and the former one goes on."""
+    """While the stream is open; a change that is wrong is told and the previous one goes on."""
     command = [sys.executable, "-m", "rvmon", "watch", "door.rv", "--format", "text"]
     process = subprocess.Popen(  # noqa: S603
         command,
@@ -228,7 +230,7 @@ def test_a_change_of_the_specification_is_taken_up_and_ctrl_c_is_an_end(door):
             os.replace("new.rv", "door.rv")
             assert any(said in line for line in iter(process.stdout.readline, ""))
         os.replace("door.rv", "gone.rv")
-        assert any("former" in line for line in iter(process.stdout.readline, ""))
+        assert any("previous" in line for line in iter(process.stdout.readline, ""))
         process.stdin.write('{"knock": true, "closed": false}\n')
         process.stdin.flush()
         assert any("D1#1" in line for line in iter(process.stdout.readline, ""))

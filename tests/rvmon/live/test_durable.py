@@ -163,7 +163,7 @@ def test_a_watch_goes_on_in_no_other_file(watched, rows, is_same):
     other = "".join(f'{{"t": {t}, "x": 9}}\n' for t in range(20, 20 + rows))
     other = other or f'{text}{{"t": 10, "x": 1}}\n{{"t": 11, "x": 1}}\n'
     told = watched(1 if is_same else 2, other).err
-    assert ("is not the file of which 11 lines were evaluated" in told) is not is_same
+    assert ("is not the file whose first 11 lines were evaluated" in told) is not is_same
 
 
 def test_a_verdict_that_cannot_be_written_is_told_by_the_next_process(watched, monkeypatch):
@@ -209,7 +209,7 @@ def test_a_kept_run_goes_on_with_the_same_requirements(tmp_path, says):
     words = "watch", tmp_path / "s.rv", tmp_path / "a.jsonl", "--state", tmp_path / "run"
     says(0, *words, "--only", "R1,R3")
     for only in ([], ["--only", "R1"], ["--only", "R2"]):
-        assert "its run evaluates R1, R3 alone: give the same --only" in says(2, *words, *only).err
+        assert "its run evaluates only R1, R3: give the same --only" in says(2, *words, *only).err
     says(0, *words, "--only", "R3,R1")
 
 

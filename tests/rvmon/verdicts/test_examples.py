@@ -62,7 +62,7 @@ def test_the_job_runs(folder, capsys):
     for command in commands:
         words = shlex.split(command.replace("logs/*.csv", "logs/a.csv logs/b.csv"))
         assert main(words) == 0, command
-    assert "B2 in logs/a.csv failed as is known" in capsys.readouterr().err
+    assert "B2 in logs/a.csv failed as known" in capsys.readouterr().err
     (folder / "known.toml").write_text("")
     assert main(words) == 1
     assert (folder / "pages" / "index.html").exists()

@@ -113,7 +113,7 @@ def test_a_table_without_rows(tmp_path):
 
 
 def test_what_is_no_file_of_verdicts_is_refused(tmp_path):
-    with pytest.raises(RvmonError, match=r"v\.xls: verdicts are kept in files that end in \.csv"):
+    with pytest.raises(RvmonError, match=r"v\.xls: verdicts are stored in files that end in \.csv"):
         refuse_format("v.xls")
     with pytest.raises(RvmonError, match="there is no file"):
         read_results(tmp_path / "none.csv")
@@ -121,7 +121,7 @@ def test_what_is_no_file_of_verdicts_is_refused(tmp_path):
         path = tmp_path / f"v.{end}"
         for body in (b"", b"t,a\n0,1\n", b"\xff\xfe\x00", b'{"a": 1}', b"[1]", b"PAR1 PAR1"):
             path.write_bytes(body)
-            with pytest.raises(RvmonError, match="holds no verdicts of rvmon"):
+            with pytest.raises(RvmonError, match="contains no verdicts of rvmon"):
                 read_results(path)
 
 
