@@ -39,14 +39,14 @@ def requirement_in_words(requirement: Requirement) -> list[str]:
     """A requirement as sentences: trigger, consequent, captured values, policy at the end."""
     lines = [f"{_starts(requirement)}:", f"{_required(requirement)}."]
     lines += [
-        f"There, `{capture.name}` is what {format_numeric(capture.value)} was when it started."
+        f"`{capture.name}` is the value of {format_numeric(capture.value)} at the trigger."
         for capture in requirement.captures
         if capture.name != formulas.TRIGGERED
     ]
     if requirement.for_each is not None:
         each = requirement.for_each
         field = format_numeric(each.value)
-        lines.append(f"All this for each value `{each.name}` of {field} by itself.")
+        lines.append(f"This applies separately to each value `{each.name}` of {field}.")
     if end := _AT_END[requirement.at_end]:
         lines.append(end)
     if requirement.run_share is not None:
@@ -69,7 +69,7 @@ def _starts(requirement: Requirement) -> str:
         return f"At every instant at which {in_words(trigger)}"
     if requirement.pulse:
         return f"Each time that {in_words(trigger)}"
-    return f"Each time that it begins to be so that {in_words(trigger)}"
+    return f"Each time that it becomes true that {in_words(trigger)}"
 
 
 def _required(requirement: Requirement) -> str:
@@ -88,7 +88,7 @@ def in_words(formula: formulas.Formula, *, positive: bool = True) -> str:
     """
     match formula:
         case formulas.Constant(value=value):
-            return "nothing is asked" if value is positive else "the impossible is asked"
+            return "nothing is required" if value is positive else "the impossible is required"
         case formulas.SignalAtom(name=name):
             return f"{name} is {'true' if positive else 'false'}"
         case formulas.EventAtom(name=name):
@@ -206,7 +206,7 @@ def _age(interval: formulas.Interval | None) -> str:
 def _begins(operand: formulas.Formula, positive: bool) -> str:
     if isinstance(operand, formulas.SignalAtom):
         return f"{operand.name} becomes {'true' if positive else 'false'}"
-    return f"it becomes so that {_clause(operand, positive)}"
+    return f"it becomes true that {_clause(operand, positive)}"
 
 
 _EVER = ("always from then on", "at some time"), ("all the time so far", "at some time so far")
