@@ -21,41 +21,6 @@ from rvmon.language.rules import Findings
 from rvmon.language.syntax.keywords import OPERATOR_TERMINALS, split_items
 from rvmon.language.syntax.parse import grammar, parse_spec
 
-Row = tuple[str, str, str, str, str]
-"""The cells of a declaration: word, names, type, role, and `ignore NaN` with `stale after`."""
-
-
-def aligned(items: Sequence[Sequence[Piece]]) -> list[str]:
-    """One line per `signal` or `event`, with names, types and roles in columns."""
-    rows = [_row(pieces) for pieces in items]
-    typed = [row for row in rows if row[2]]
-    word = max(len(row[0]) for row in rows) if rows else 0
-    names, types, roles = (max((len(row[n]) for row in typed), default=0) for n in (1, 2, 3))
-    lines = []
-    for (item, listed, type_, role, stale), pieces in zip(rows, items, strict=True):
-        cells = (
-            [f"{listed:<{names}} {type_:<{types}}", f"{role:<{roles}}"] if type_ else [listed, role]
-        )
-        cells += [stale, next((piece.comment_after for piece in pieces if piece.comment_after), "")]
-        lines.append(
-            "  ".join([f"{item:<{word}} {cells[0]}", *filter(str.strip, cells[1:])]).rstrip()
-        )
-    return lines
-
-
-def _row(pieces: Sequence[Piece]) -> Row:
-    def first(kinds: Sequence[str], otherwise: int) -> int:
-        alone = (n for n, piece in enumerate(pieces) if piece.kind in kinds and not piece.depth)
-        return next(alone, otherwise)
-
-    end = len(pieces)
-    stale = first(("IGNORE_NAN", "STALE_AFTER"), end)
-    role = first(("ROLE",), stale)
-    colon = first(("COLON",), role)
-    texts = (pieces[1:colon], pieces[colon:role], pieces[role:stale], pieces[stale:end])
-    return pieces[0].text, *map(text_of, texts)  # type: ignore[return-value]  # four of them
-
-
 _CLAUSES = {
     "UPON", "WHENEVER", "THEN", "MONITOR_AS_RESPONSE", "MONITOR_AS_WRITTEN", "MONITOR_AS_COVER",
     "TEXT_CLAUSE", "SEVERITY", "TAGS", "LET", "FOR_EACH", "AT_END", "PROPERTY", "SCOPE",
@@ -168,6 +133,41 @@ def _align(blocks: Sequence[Block]) -> None:
         if all(len(line) <= WIDTH for line in lines):
             for block, line in zip(run, lines, strict=True):
                 block.lines = [line]
+
+
+Row = tuple[str, str, str, str, str]
+"""The cells of a declaration: word, names, type, role, and `ignore NaN` with `stale after`."""
+
+
+def aligned(items: Sequence[Sequence[Piece]]) -> list[str]:
+    """One line per `signal` or `event`, with names, types and roles in columns."""
+    rows = [_row(pieces) for pieces in items]
+    typed = [row for row in rows if row[2]]
+    word = max(len(row[0]) for row in rows) if rows else 0
+    names, types, roles = (max((len(row[n]) for row in typed), default=0) for n in (1, 2, 3))
+    lines = []
+    for (item, listed, type_, role, stale), pieces in zip(rows, items, strict=True):
+        cells = (
+            [f"{listed:<{names}} {type_:<{types}}", f"{role:<{roles}}"] if type_ else [listed, role]
+        )
+        cells += [stale, next((piece.comment_after for piece in pieces if piece.comment_after), "")]
+        lines.append(
+            "  ".join([f"{item:<{word}} {cells[0]}", *filter(str.strip, cells[1:])]).rstrip()
+        )
+    return lines
+
+
+def _row(pieces: Sequence[Piece]) -> Row:
+    def first(kinds: Sequence[str], otherwise: int) -> int:
+        alone = (n for n, piece in enumerate(pieces) if piece.kind in kinds and not piece.depth)
+        return next(alone, otherwise)
+
+    end = len(pieces)
+    stale = first(("IGNORE_NAN", "STALE_AFTER"), end)
+    role = first(("ROLE",), stale)
+    colon = first(("COLON",), role)
+    texts = (pieces[1:colon], pieces[colon:role], pieces[role:stale], pieces[stale:end])
+    return pieces[0].text, *map(text_of, texts)  # type: ignore[return-value]  # four of them
 
 
 def _joined(blocks: Sequence[Block], end: Sequence[str]) -> str:
