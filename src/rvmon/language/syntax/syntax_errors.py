@@ -60,6 +60,7 @@ and the text after it. The terminal must be accepted at the word; "" puts no con
 the pattern fill the placeholders of the fix.
 """
 _CERTAIN: _Rows = (
+    # `x < 5 A`: the letter is an operator, not the unit.
     *(
         (
             rf"(?<![\w.])(\d[\d.]*)[ \t]*\0?{sign}\s*\0",
@@ -67,6 +68,7 @@ _CERTAIN: _Rows = (
         )
         for sign in "AW"
     ),
+    # `then not open for 1 s`: the duration comes after its formula.
     (
         rf"\A(?=[^\0]*\0for\0)[^\0]*(?:{_BEGINNINGS}|\()"
         r"\s*([^()\0]*[^\s\0])\s*\0for\0[ \t]+(\d[\d.]*[ \t]*\w+)",
@@ -76,19 +78,12 @@ _CERTAIN: _Rows = (
     (
         rf"\A(?=[^\0]*\0\[\0)[^\0]*(?:{_BEGINNINGS})"
         r"\s*([^\0]*[^\s\0])\s+in\s*\0\[\0\s*([^],]+?)\s*,\s*([^]]+?)\s*\]",
-        *("", "`in` is for labels: write `({0} >= {1} and {0} <= {2})`"),
+        *("", "`in` takes a list of values: write `({0} >= {1} and {0} <= {2})`"),
     ),
+    # `0,5`, `.5` and `3.`
     (r"(?<![\w.])(\d+)\0[.,]\0(\d+)", "", "write `{0}.{1}`"),
     (r"(?<![\w.])\0[.,]\0(\d+)", "", "write `0.{0}`"),
     (r"(?<![\w.])(\d+)\0\.\0", "", "write `{0}.0`"),
-    (
-        r"(?<![\w.])within[ \t]+\0\[\0",
-        *("", "`within` takes a duration; a window stands after `eventually`"),
-    ),
-    (
-        r"(?<![\w.])for[ \t]+\0\[\0",
-        *("", "`for` takes a duration; a window stands after `always`"),
-    ),
     (_DURATION_OF + r"\0[-+*/]\0", "", "a computed duration stands in brackets"),
     (_DURATION_OF + r"\0,\0", "", "there is no comma after a duration"),
 )
