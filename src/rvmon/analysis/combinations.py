@@ -143,6 +143,8 @@ Relation = tuple[tuple[Source, ...], dict[tuple[int, ...], set[T]]]
 def _projected(table: Table[T], shared: Mapping[Source, Mapping[State, Truths]]) -> Relation[T]:
     """A table projected onto the cases of the sources that it shares with others."""
     places = [place for place, source in enumerate(table.sources) if source in shared]
+    # Per shared source, from the truth values of this table's leaves to the numbers of the joint
+    # cases that have them: the leaves of other tables may distinguish more cases.
     cases: list[dict[Truths, list[int]]] = []
     for place in places:
         columns = [shared[table.sources[place]][leaf] for leaf in table.leaves[place]]

@@ -47,6 +47,7 @@ def cubes_of(vectors: Iterable[Cube], never: Collection[Cube] = ()) -> tuple[Cub
 def _primes(vectors: set[Cube]) -> list[Cube]:
     primes: list[Cube] = []
     level = set(vectors)
+    # Each round merges cubes that differ in one literal; those that merge with none are prime.
     while level:
         merged: set[Cube] = set()
         used: set[Cube] = set()

@@ -110,6 +110,7 @@ class _Machine:
             compiled.forecaster.of(location.residual, (), None) for location in automaton.locations
         )
         self.verdicts = [{True: "P", False: "F", None: "?"}[end] for end in ends]
+        # Impossible letters are gone, so more states are decided than the forecaster can know.
         while ahead := {at: w for at, e in enumerate(self.edges) if (w := self._implied(at, e))}:
             for index, word in ahead.items():
                 self.verdicts[index] = word
@@ -140,6 +141,7 @@ class _Machine:
         The state at the trigger comes first; only letters in `first` are possible there.
         """
         edges_of = self.edges
+        # All edge maps have the letters in the same order, so their targets can be compared.
         blocks = refined(
             self.verdicts, lambda at, of: tuple(of[to] for to in edges_of[at].values())
         )

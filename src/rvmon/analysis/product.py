@@ -179,6 +179,7 @@ class _Search:
         width = self.starts[cell + 1] - self.starts[cell] if cell < last else 2
         # A cell of one tick has no second position.
         first = cell if width > 1 else cell + 1
+        # In held time every tick is a position, so no cell can be skipped.
         if self.dense:
             return range(first, min(cell + 1, last) + 1)
         # A run may have no sample in a cell, so the step may skip cells, but not one in which a
@@ -191,7 +192,7 @@ class _Search:
     ) -> Iterator[Spot | None]:
         """The possible states of one attempt after a step in a cell."""
         automaton, age = self.automata[index], self.starts[cell] - self.offsets[index]
-        if age < 0:
+        if age < 0:  # not triggered yet
             yield None
             return
         if spot is None:

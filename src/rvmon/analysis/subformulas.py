@@ -195,6 +195,7 @@ def _miss(parts: tuple[_Part, ...], truths: Sequence[Truth]) -> _Miss:
     instants = distinct([one[:, 0] for one in spans])
     true = np.array([hold(one, instants) for one in spans])
     events = true[[isinstance(part.formula, formulas.EventAtom) for part in parts]].sum(axis=0)
+    # The factor lets the number of true operands decide, and events only between equal numbers.
     best = int(np.argmax(true.sum(axis=0) * (len(parts) + 1) + events))
     is_there = true[:, best].tolist()
     there = tuple(part for part, is_true in zip(parts, is_there, strict=True) if is_true)

@@ -109,5 +109,6 @@ class WindowValues:
 
 def _captured_at(name: str, since_origin: int, window: WindowValue) -> Requirement:
     """A requirement that captures a window at the first position from an instant on."""
+    # `once` of true, so long ago or longer, becomes true at that instant and stays true.
     reached = Unary(UnaryOp.ONCE, Constant(True), Interval(since_origin))
     return Requirement(name, Mode.UPON, reached, Constant(True), captures=(Capture("it", window),))

@@ -196,6 +196,7 @@ class Diagrams:
         found = made.get(opened)
         if found is not None:
             return found
+        # Skip propositions that the residual no longer reads.
         while place >= 0 and all(map(choices[place][1].isdisjoint, opened)):
             place -= 1
         if place < 0:

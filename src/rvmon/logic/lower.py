@@ -110,6 +110,8 @@ def lower(
     def hidden(every: bool) -> Obligation:
         doubt = factory.doubt(trigger, pulse=requirement.pulse, every=every)
         running = _running(doubt, requirement, factory)
+        # The consequent is owed only where a trigger may be hidden: where `running` is UNKNOWN.
+        # There `here` is UNKNOWN too; elsewhere it is TRUE, which excuses the consequent.
         here = factory.state_any([factory.negation(running), factory.sure(running)])
         either = factory.any_of(
             [factory.literal(here, mtl.Sense.TRUE), lowering.required(required)]

@@ -88,6 +88,7 @@ class _Draft:
         """Merge equivalent locations; returns whether there were any."""
         keys = [self._key(index, label) for index in range(len(self.drafts))]
         blocks = refined(keys, self._moves)
+        # The first location of each block represents it.
         kept = [index for index, block in enumerate(blocks) if blocks.index(block) == index]
         if len(kept) == len(self.drafts):
             return False
