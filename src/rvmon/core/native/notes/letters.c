@@ -1,17 +1,17 @@
-/* Letters of a network's propositions, stored for notes: one where they changed (with samples as
- * positions, one per sample), from the begin of the oldest open attempt on.
+/* Letters of a network's propositions, stored for notes: one where they changed (in sampled time, one per
+ * sample), from the start of the oldest open attempt on.
  *
- * They are in pieces of fixed size, linked in order. A note refers to the pieces from the begin of its
+ * They are in pieces of fixed size, linked in order. A note refers to the pieces from the start of its
  * attempt to its decision, so decisions copy no letters. A piece lives while it is in the list of its
- * judge, or pinned: referred to by a record's note. Pinning compares a number with the monitor's
- * `pins`, so that bumping that unpins all at once. */
+ * judge, or pinned, that is, referred to by a record's note. A piece is pinned if its number equals the
+ * monitor's `pins`, so incrementing `pins` unpins all pieces at once. */
 #include "networks/network.h"
 #include "notes/notes.h"
 #include "runs/runs.h"
 
 #include <string.h>
 
-/* Most pieces of a judge: an attempt that lasts longer is explained by its last part. */
+/* The most pieces of a judge: an attempt that lasts longer is explained by its last part. */
 #define PIECES_MOST 4096
 
 const int64_t *rv_piece_words(const rv_piece *piece, int32_t *count)
@@ -52,8 +52,9 @@ static void drop_piece(rv_monitor *m, rv_piece *piece)
     arena_give(&m->memory, piece, size_of_piece(piece->stride));
 }
 
-/* Take the oldest piece out of the list: no open attempt needs it. If notes do, it moves to `left`;
- * else it is freed. Notes of open attempts may refer to either, so they are dropped first. */
+/* Take the oldest piece, which no open attempt needs, out of the list. If notes need it, it moves to
+ * `left`; else it is freed. Notes of open attempts may refer to it in both cases, so they are dropped
+ * first. */
 static void leave_first(rv_monitor *m, noting *n)
 {
     rv_piece *piece = n->first;
@@ -110,7 +111,7 @@ void forget_letters(rv_monitor *m, noting *n)
     }
 }
 
-/* The first instant whose letter is needed: since the begin of the oldest attempt, or within `reach` of
+/* The first instant whose letter is needed: since the start of the oldest attempt, or within `reach` of
  * the last letter, whichever is later. */
 static int64_t needed_from(const run *r, int32_t index)
 {
@@ -150,8 +151,8 @@ static bool is_doubtful(const int64_t *packed, int32_t words)
     return false;
 }
 
-/* Store the letter at position `t`; if something in it is unknown, open attempts may hang on it. The
- * slot behind the last letter is written first, and kept only if the letter differs. */
+/* Store the letter at position `t`; if something in it is unknown, it may keep open attempts undecided.
+ * The slot after the last letter is written first, and kept only if the letter differs. */
 void keep_letter(run *r, int32_t index, int64_t t)
 {
     rv_monitor *m = r->home->monitor;
@@ -189,13 +190,13 @@ void keep_letter(run *r, int32_t index, int64_t t)
         && ((n->last->before[0] == t)
             || ((GAP(r) > 0)
                 && (memcmp(&n->last->before[1], &made[1], (size_t)words * sizeof *made) == 0)))) {
-        return; /* as before */
+        return; /* the letter has not changed */
     }
     n->last->count += stride;
 }
 
-/* Pin the pieces from `first` to the end of a judge's list: from `first` up to one that is pinned, then
- * from the last pinned one on. Pinned pieces have no gaps. */
+/* Pin the pieces from `first` to the end of a judge's list: from `first` up to the next pinned piece, and
+ * from the last pinned piece on. There are no gaps between pinned pieces. */
 static void pin(const rv_monitor *m, noting *n, rv_piece *first)
 {
     rv_piece *one = first;
@@ -211,8 +212,8 @@ static void pin(const rv_monitor *m, noting *n, rv_piece *first)
     n->pinned = n->last;
 }
 
-/* A span of the letters from `begin` to the last one, shared with the span before if equal; -1: there
- * are none. */
+/* A span of the letters from `begin` to the last one, shared with the previous span if equal; -1: there
+ * are no letters. */
 int32_t span_from(rv_monitor *m, noting *n, int64_t begin)
 {
     rv_piece *first = n->first;
@@ -243,8 +244,8 @@ int32_t span_from(rv_monitor *m, noting *n, int64_t begin)
     return m->span_count - 1;
 }
 
-/* Copy a span to those that stay, once; returns its new index, which the old span then stores
- * negated. */
+/* Copy a span to those that stay, only once: the old span then stores its new index, negated. Returns the
+ * new index. */
 int32_t keep_span(rv_monitor *m, kept_notes *to, int32_t number)
 {
     span_of_letters *old = &m->spans[number];
@@ -256,9 +257,9 @@ int32_t keep_span(rv_monitor *m, kept_notes *to, int32_t number)
     return -1 - old->last_count;
 }
 
-/* Free the letters that no note refers to any more: unpin all, pin those of the spans left, free the
- * rest. Taking spans last first, the pieces pinned per judge end with its last span, so reaching a
- * pinned piece ends the walk. */
+/* Free the letters to which no note refers any more: unpin all, pin those of the remaining spans, free
+ * the rest. Spans are taken in reverse order, so for each judge the pinned pieces end with its last span,
+ * and reaching a pinned piece ends the walk. */
 void pin_kept_letters(rv_monitor *m)
 {
     rv_piece **link = &m->left;
@@ -311,7 +312,7 @@ void unpin_letters(rv_monitor *m)
 
 /* Rings of truths. */
 
-/* The last entry not behind instant `t`, by bisection; NULL: none. */
+/* The last entry not after instant `t`, by bisection; NULL: none. */
 const int64_t *truths_at(const truths *ring, int32_t words, int64_t t)
 {
     int32_t low = 0;
@@ -330,7 +331,7 @@ const int64_t *truths_at(const truths *ring, int32_t words, int64_t t)
     return (low > 0) ? entry_of(ring, low - 1, words) : NULL;
 }
 
-/* Drop the entries that stand for nothing from `oldest` on: all but the last one before it. */
+/* Drop the entries that are not needed from `oldest` on: all at or before it except the last. */
 void drop_truths(truths *ring, int32_t words, int64_t oldest)
 {
     while ((ring->count > 1) && (entry_of(ring, 1, words)[0] <= oldest)) {

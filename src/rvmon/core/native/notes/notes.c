@@ -1,9 +1,9 @@
 /* The history from which notes are written (write_notes.c). It never influences verdicts.
  *
- * Per run: for each node that notes describe, since when it has its truth and when it last had each
- * other truth; and the same before the last change of any node, because a network may report a decision
- * one position late. Per judge: rings of the leaves at triggers and at doubts. Consecutive triggers
- * with equal leaves share an entry, so that attempts need not store any. */
+ * Per run: for each node that notes describe, since when it has its truth and when it was last false and
+ * last true; and the same before the last change of any node, as a network may report a decision one
+ * position late. Per judge: rings of the leaves at triggers and at doubts. Consecutive triggers with
+ * equal leaves share an entry, so attempts need not store leaves. */
 #include "input/input.h"
 #include "networks/network.h"
 #include "notes/notes.h"
@@ -64,7 +64,7 @@ bool make_notes(run *r)
     return true;
 }
 
-/* Keep no history of a run: not all of it could be allocated. */
+/* Drop the history of a run, as not all of it could be allocated. */
 static void drop_notes(run *r)
 {
     int32_t i;
@@ -177,7 +177,7 @@ truth_times truth_times_of(const run *r, int32_t node, bool before)
     return (before && (moved_last(r, node) != NULL)) ? own->was : own->now;
 }
 
-/* Pack the truths of nodes, as they are or as they were before the last change of any. */
+/* Pack the truths of nodes, as they are now or as they were before the last change of any node. */
 void pack_truths(const run *r, list nodes, bool before, int64_t *words)
 {
     const int32_t *node = LIST(PLAN(r), nodes);
@@ -202,8 +202,8 @@ void pack_truths(const run *r, list nodes, bool before, int64_t *words)
     }
 }
 
-/* Pack the leaves of a judge for people: UNKNOWN where a leaf is taken for a truth because its signal is
- * not born yet. Returns whether there is such a leaf. */
+/* Pack the leaves of a judge as reports show them: UNKNOWN where a leaf has another truth only because
+ * its signal is not born yet. Returns whether there is such a leaf. */
 bool pack_leaves(const run *r, int32_t index, bool before, int64_t *words)
 {
     const list leaves = r->part->judges[index].leaves;
@@ -238,7 +238,7 @@ static int64_t oldest_trigger(const run *r, int32_t index)
 }
 
 /* Append an entry for instant `t` to a ring of a judge; NULL: memory is short. A full ring first drops
- * what no open attempt needs, and grows if that freed less than half. */
+ * the entries that no open attempt needs, and grows if that freed less than half. */
 static int64_t *add_truths(const run *r, int32_t index, truths *ring, int32_t words, int64_t t)
 {
     rv_monitor *m = r->home->monitor;
@@ -277,8 +277,8 @@ static bool leaves_are(const run *r, int32_t index, const int64_t *words)
     return true;
 }
 
-/* An attempt is triggered at `t`: remember the leaves, unless they are as at the last trigger, whose
- * entry then stands for this one, too. */
+/* An attempt is triggered at `t`: remember the leaves, unless they equal those at the last trigger, whose
+ * entry then serves this one, too. */
 void note_trigger(run *r, int32_t index, int64_t t)
 {
     noting *n = r->judges[index].noting;
@@ -293,8 +293,7 @@ void note_trigger(run *r, int32_t index, int64_t t)
     }
 }
 
-/* Something is unknown at `t` that may keep attempts undecided: remember the leaves, once per
- * instant. */
+/* Unknown input at `t` may keep attempts undecided: remember the leaves, once per instant. */
 void note_doubt(run *r, int32_t index, int64_t t)
 {
     noting *n = r->judges[index].noting;
@@ -312,14 +311,14 @@ void note_doubt(run *r, int32_t index, int64_t t)
     }
 }
 
-/* The position at which an attempt began: the last one if the end of the trace triggered it. */
+/* The position at which an attempt started; the last one if the end of the trace triggered it. */
 int64_t begin_of(const run *r, int32_t index, const attempt *x)
 {
     return (r->part->judges[index].trigger < 0) ? r->at.position : x->triggered;
 }
 
-/* The entry of the doubt that keeps an attempt open, or NULL: where its readings parted; for a network
- * the first doubt since it began. */
+/* The entry of the doubt that keeps an attempt open, or NULL: that where its readings parted; for a
+ * network the first doubt since its start. */
 const int64_t *doubt_of(const run *r, int32_t index, const attempt *x)
 {
     const truths *ring = &r->judges[index].noting->doubts;
@@ -336,7 +335,7 @@ const int64_t *doubt_of(const run *r, int32_t index, const attempt *x)
     return NULL;
 }
 
-/* The readings of an attempt have parted, or met again, at the position of its judge. */
+/* The readings of an attempt have parted, or agree again, at the position of its judge. */
 void note_parting(run *r, int32_t index, attempt *x)
 {
     if ((r->part->judges[index].flags & JUDGE_HIDDEN) == 0) {
@@ -361,7 +360,7 @@ static bool is_in_doubt(const run *r, int32_t index)
     return false;
 }
 
-/* An attempt begins at position `t` (not in a queue). */
+/* An attempt starts at position `t` (not in a queue). */
 void note_begin(run *r, int32_t index, attempt *x, int64_t t)
 {
     if ((r->part->judges[index].flags & JUDGE_HIDDEN) != 0) {

@@ -1,21 +1,21 @@
-/* Writing notes: the words from which reasons of decisions and of open attempts are derived. All notes
- * are in one array of int64, each found by the index in its record.
+/* Writing notes: the words from which reasons for decisions and for open attempts are derived. All notes
+ * are in one array of int64; a record has the index of its note.
  *
  * 0  kind; from bit 8, flags; from bit 24, the judge; from bit 40, the number of words
  * 1  the index of the state of the propositions, which notes share; -1: none
- * 2  DECIDED: the instant; OPEN: the stamp of time; NOTHING: -1
- * 3  network: its span of letters, or -1, and in OPEN from bit 32 the number of open attempts;
- *    automaton: the number of clocks, in OPEN of the worse reading and from bit 32 of the better
+ * 2  DECIDED: the instant; OPEN: the current stamp; NOTHING: -1
+ * 3  network: its span of letters, or -1; for OPEN, from bit 32 on the number of open attempts
+ *    automaton: the number of clocks; for OPEN, of the worse reading, and from bit 32 on of the better
  * 4  OPEN: the instant of the doubt, or RV_NO_TIME
  * 5  OPEN: the end of the trace, or RV_NO_TIME
- * 6  the position at which the attempt began
- * Then the leaves at the trigger; for OPEN with a doubt, the leaves there; of an automaton location and
- * clocks just before the decision, for OPEN of both readings; for OPEN of a network, two locations; for
- * OPEN then what was not known (input/unknowns.c).
+ * 6  the position at which the attempt started
+ * Then follow the leaves at the trigger; for OPEN with a doubt, the leaves there; for an automaton, the
+ * location and clocks just before the decision, for OPEN of both readings; for OPEN of a network, two
+ * locations; for OPEN, the unknown inputs (input/unknowns.c).
  *
  * A state: its number of words; the first position the run saw, or RV_NO_TIME; the leaves; the
- * propositions; for each of these since when, and when it was last false and last true, or
- * RV_NO_TIME. */
+ * propositions; for each proposition since when it has its truth, when it was last false and when it was
+ * last true, or RV_NO_TIME. */
 #include "input/input.h"
 #include "networks/network.h"
 #include "notes/notes.h"
@@ -35,7 +35,7 @@ static int64_t *further_words(rv_monitor *m, int64_t count)
     return &m->notes[m->note_count - count];
 }
 
-/* Drop the notes of open attempts, which stand behind those of records. */
+/* Drop the notes of open attempts, which follow those of records. */
 void drop_open_notes(rv_monitor *m)
 {
     if (m->has_open_notes && !m->writes_open_notes) {
@@ -43,7 +43,7 @@ void drop_open_notes(rv_monitor *m)
     }
 }
 
-/* The index of the state at instant `t`, shared with the last one if nothing changed since; -1: memory
+/* The index of the state at instant `t`, shared with the last state if nothing changed since; -1: memory
  * is short. */
 static int64_t note_state(run *r, int32_t index, int64_t t)
 {
@@ -79,7 +79,7 @@ static int64_t note_state(run *r, int32_t index, int64_t t)
         own[1] = one.last[0];
         own[2] = one.last[1];
     }
-    if (!before && !awaits_birth) { /* a birth may change what is shown though no truth changes */
+    if (!before && !awaits_birth) { /* a birth may change what is shown although no truth changes */
         n->epoch = m->epoch;
         n->state_at = r->truth_log->moved_at;
         n->state = made - m->notes;
@@ -97,7 +97,7 @@ static int64_t flags_of(const run *r, int32_t index, const attempt *x)
     return flags;
 }
 
-/* Begin a note with `count` words behind the leaves at its trigger, which the caller fills; returns its
+/* Start a note with `count` words after the leaves at its trigger, which the caller fills; returns its
  * index, -1: memory is short. */
 static int64_t begin_note(run *r, int32_t index, const attempt *x, int64_t kind, int64_t flags,
                           int64_t count)
@@ -142,7 +142,7 @@ int64_t note_inconclusive(run *r, int32_t index, const attempt *x)
     return begin_note(r, index, x, NOTE_NOTHING, 0, 0);
 }
 
-/* A note for a decision at `t`. For an automaton, hold_token has saved where it stood before. */
+/* A note for a decision at `t`. For an automaton, hold_token has saved its state before. */
 int64_t note_decision(run *r, int32_t index, const attempt *x, int64_t t)
 {
     rv_monitor *m = r->home->monitor;
@@ -175,12 +175,12 @@ void hold_token(rv_monitor *m, const machine *a, int32_t location, const int64_t
     } else if (was->width > 1) {
         (void)memcpy(was->clocks, clocks, (size_t)was->width * sizeof *clocks);
     } else {
-        /* It has none. */
+        /* The location has no clocks. */
     }
 }
 
-/* Advance what was saved to just before instant `t`: positions from `first` on had this letter. Needed
- * as attempts are driven over many positions at once. */
+/* Advance the saved state to just before instant `t`: positions from `first` on had this letter. Needed
+ * because attempts are driven over many positions at once. */
 void hold_until(rv_monitor *m, const machine *a, int32_t letter, int64_t first, int64_t t)
 {
     before_decision *was = &m->before;
@@ -267,7 +267,7 @@ void forget_notes(rv_monitor *m, int64_t words, int32_t spans)
     m->epoch++;
 }
 
-/* Begin to drop all notes but some, which are copied to `to`; false: memory is short. */
+/* Start to drop all notes except some, which are copied to `to`; false: memory is short. */
 bool begin_keeping(rv_monitor *m, kept_notes *to)
 {
     drop_open_notes(m);
@@ -295,8 +295,8 @@ static int64_t keep_words(kept_notes *to, const int64_t *words, int64_t count)
     return to->count - count;
 }
 
-/* Copy a note and what it refers to; returns its new index. A state copied stores its new index,
- * negated, so that it is copied once. */
+/* Copy a note and what it refers to; returns its new index. A copied state stores its new index, negated,
+ * so that it is copied only once. */
 int64_t keep_note(rv_monitor *m, kept_notes *to, int64_t note)
 {
     const int64_t *words;
@@ -338,7 +338,7 @@ void end_keeping(rv_monitor *m, kept_notes *to)
     }
 }
 
-/* Bracket the writing of notes of open attempts, which stand behind those of records. */
+/* Bracket the writing of notes of open attempts, which follow those of records. */
 void bracket_open_notes(rv_monitor *m, bool begins)
 {
     if (begins) {

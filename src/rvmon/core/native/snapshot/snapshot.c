@@ -1,6 +1,6 @@
-/* rv_save and rv_load. A header (magic with version, hash of the plan, size, hash of the rest), then
- * the whole run. The hash guards against accidents only: whatever the bytes are, each field is checked,
- * so they are refused or yield a state that the core can go on from. */
+/* rv_save and rv_load. A header (magic with version, hash of the plan, size, hash of the rest), then the
+ * whole run. The hash guards only against accidents: each field is checked whatever the bytes are, so
+ * they are refused or yield a state from which the core can continue. */
 #include "notes/notes.h"
 #include "results/results.h"
 #include "snapshot/snapshot.h"
@@ -32,7 +32,7 @@ static void carry_head(carrier *c, size_t size, uint64_t hash)
     }
 }
 
-/* The records, each with its captured values. 27 is less than the bytes of any record. */
+/* The records, each with its captured values. 27 is less than the number of bytes of any record. */
 static void carry_records(carrier *c, rv_monitor *m)
 {
     const int32_t requirements = m->plan.header->requirements;

@@ -136,8 +136,8 @@ void carry_instant_or(carrier *c, int64_t *x, int64_t none)
     }
 }
 
-/* A number: its kind, then its value. For an unknown one with a known cause, kinds above RV_REAL tell
- * the cause. */
+/* A number: its kind, then its value. For an unknown number with a known cause, the kind is above RV_REAL
+ * and gives the cause. */
 void carry_number(carrier *c, rv_number *x)
 {
     const bool says_why = (x->kind == RV_UNKNOWN) && (x->as.whole > 0) && (x->as.whole <= IS_STALE);

@@ -38,8 +38,8 @@ static void carry_kept(carrier *c, home *h, past_update *one)
     }
 }
 
-/* Whether stored samples can be replayed: stamps ascend, outages begin and end in turn, and an outage
- * before the first sample occurs with a clock only. `*longest` becomes the largest number of updates of
+/* Whether stored samples can be replayed: stamps ascend, outages start and end in turn, and an outage
+ * before the first sample occurs only with a clock. `*longest` becomes the largest number of updates of
  * a sample, for which the inbox needs room. */
 static bool is_in_turn(const home *h, int32_t *longest)
 {
@@ -85,7 +85,7 @@ static void carry_past_updates(carrier *c, home *h)
     }
 }
 
-/* The closed keys, oldest first. */
+/* The closed keys, the oldest first. */
 static void carry_over(carrier *c, home *h)
 {
     int32_t count = h->over_count;
@@ -221,8 +221,8 @@ static void carry_runs(carrier *c, home *h)
     }
 }
 
-/* Whether a part has done everything that was due by `reached`: else it would be caught up with,
- * however many positions ago that was. */
+/* Whether a part has done everything that was due by `reached`; else the core would catch up, over any
+ * number of positions. */
 static bool is_caught_up(const home *h)
 {
     const rv_monitor *m = h->monitor;
@@ -238,7 +238,7 @@ static bool is_caught_up(const home *h)
         if (one->at.started && (one->at.position > m->reached)) {
             return false;
         }
-        if (!holds_back(h) && !one->at.dense /* samples amid an outage do not take it on */
+        if (!holds_back(h) && !one->at.dense /* samples during an outage do not advance it */
             && ((next_position(one) < m->reached) || (timers_next(&one->rules) < m->reached))) {
             return false;
         }
@@ -291,7 +291,7 @@ void carry_stale(carrier *c, rv_monitor *m)
     }
 }
 
-/* The current items of a group, which have to be its own. */
+/* The current items of a group, which have to belong to it. */
 static void carry_group(carrier *c, home *h, int32_t number)
 {
     covering *own = h->covering;

@@ -59,7 +59,7 @@ static void carry_attempt(carrier *c, run *r, int32_t index, int32_t at)
     }
 }
 
-/* A new attempt behind `last` of a list; -1: memory is short. */
+/* A new attempt after `last` in a list; -1: memory is short. */
 static int32_t appended(run *r, int32_t *first, int32_t last)
 {
     const int32_t at = new_attempt(r);
@@ -79,7 +79,7 @@ static int32_t appended(run *r, int32_t *first, int32_t last)
     return at;
 }
 
-/* A list of attempts; returns the last one. 34 is less than the bytes of any. */
+/* A list of attempts; returns the last one. 34 is less than the number of bytes of any attempt. */
 static int32_t carry_attempts(carrier *c, run *r, int32_t index, int32_t *first)
 {
     int32_t count = 0;
@@ -121,8 +121,8 @@ static bool is_undecidable_listed(const run *r, int32_t index, int32_t wanted)
     return at >= 0;
 }
 
-/* Whether a judge that was read can be driven on without reading a missing structure or looping: its
- * timer lies ahead, and attempts are in the structure of its engine. */
+/* Whether a judge that was read can continue without reading a missing structure or looping: its timer
+ * lies ahead, and attempts are in the structure of its engine. */
 static bool is_driven(const run *r, int32_t index)
 {
     const judge *j = &r->judges[index];
@@ -220,7 +220,7 @@ void carry_judges(carrier *c, run *r)
     carry_calls(c, r);
 }
 
-/* Networks and chains. The ranges added by the last step are not stored: no step is undone after the
+/* Networks and chains. The ranges added by the last step are not stored, as no step is undone after the
  * call that made it. */
 
 /* Ascending disjoint ranges that end at `most` at the latest. */
@@ -264,7 +264,7 @@ static void carry_samples(carrier *c, ranges *x)
 }
 
 /* What one reading of a network knows. In sampled time positions are sample numbers from 0, and the
- * instants of all from `oldest` on have to be there. */
+ * instants of all samples from `oldest` on have to be there. */
 static void carry_network(carrier *c, const form *f, network *w)
 {
     const bool sparse = f->gap == 0;

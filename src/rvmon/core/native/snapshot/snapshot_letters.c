@@ -1,11 +1,11 @@
-/* Letters in a snapshot: the pieces of each judge, then those that notes refer to. A piece of both
- * kinds is written twice, and read back as two. */
+/* Letters in a snapshot: the pieces of each judge, then those that notes refer to. A piece that is both
+ * is written twice, and read back as two pieces. */
 #include "notes/notes.h"
 #include "runs/runs.h"
 #include "snapshot/snapshot.h"
 
-/* `count` words of letters of a piece, not before instant `from`; `whole`: the piece is full. Returns
- * the instant of the last. */
+/* `count` words of letters of a piece, not before instant `from`; `whole`: the piece is full. Returns the
+ * instant of the last letter. */
 static int64_t carry_piece(carrier *c, rv_piece *piece, int32_t count, int64_t from, bool whole)
 {
     const int32_t most = LETTERS_IN_PIECE * piece->stride;
@@ -44,14 +44,14 @@ static void carry_before(carrier *c, rv_piece *last, rv_piece *second)
         } else if (i > 0) {
             there = &last->words[last->count - i * last->stride];
         } else {
-            /* None. */
+            /* There is no such letter. */
         }
         if (!c->reading && (last->before == there)) {
             back = i;
         } else if (c->reading && (i == 0)) {
             carry_int(c, &back, 0, (int64_t)most + 1);
         } else {
-            /* It is another one. */
+            /* `before` is another letter. */
         }
         if (c->reading && (back == i)) {
             last->before = there;
@@ -114,9 +114,9 @@ static void forget_numbers(rv_monitor *m)
     }
 }
 
-/* Number the pieces that notes refer to, into `places` unless NULL; returns how many. Spans are taken
- * last first: per judge the numbered pieces then end with its last span, so reaching a numbered piece
- * ends the walk. */
+/* Number the pieces that notes refer to, and put them into `places` unless NULL; returns how many. Spans
+ * are taken in reverse order: for each judge the numbered pieces then end with its last span, so reaching
+ * a numbered piece ends the walk. */
 static int32_t number_pieces(rv_monitor *m, numbered_piece *places)
 {
     int32_t count = 0;
@@ -186,7 +186,7 @@ static void carry_span(carrier *c, const numbered_piece *places, int32_t count, 
     int32_t last = c->reading ? 0 : own->last->number;
     carry_int(c, &first, 0, count);
     carry_int(c, &last, 0, count);
-    carry_int(c, &own->last_count, 0, (int64_t)MOST); /* 0: a piece whose first letter is yet to come */
+    carry_int(c, &own->last_count, 0, (int64_t)MOST); /* 0: a piece without letters so far */
     if (c->reading && !c->refused) {
         const rv_piece *end = places[last].piece;
         demand(c, (places[first].chain == places[last].chain)

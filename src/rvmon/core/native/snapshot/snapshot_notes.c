@@ -116,14 +116,14 @@ void carry_unknowns(carrier *c, home *h)
     }
 }
 
-/* The notes of records: their words as they are. On reading, each note has to belong to exactly one
- * record and refer to existing states and letters. */
+/* The notes of records, as plain words. On reading, each note has to belong to exactly one record and
+ * refer to existing states and letters. */
 
-/* What begins at a word: a note, a state, or a note that a record has claimed. */
+/* What starts at a word: a note, a state, or a note that a record has claimed. */
 enum { A_NOTE = 1, A_STANDING = 2, A_TAKEN_NOTE = 3 };
 
-/* Find where notes and states begin: both say their length first, a note in the upper bits of its
- * word. */
+/* Find where notes and states start: the first word of both has their length, for a note in its upper
+ * bits. */
 static void find_begins(carrier *c, const rv_monitor *m)
 {
     int64_t at = 0;
@@ -168,7 +168,7 @@ void end_notes(carrier *c, rv_monitor *m)
     }
 }
 
-/* Whether a state of a judge begins at a place. */
+/* Whether a state of a judge starts at a place. */
 bool is_state(const carrier *c, const judge_plan *judged, int64_t place)
 {
     const rv_monitor *m = c->m;
@@ -179,7 +179,7 @@ bool is_state(const carrier *c, const judge_plan *judged, int64_t place)
            && are_truths(&m->notes[place + 2], leaves + letters);
 }
 
-/* A note being checked, and how far. */
+/* A note that is being checked, and how far the check has come. */
 typedef struct {
     const part *own;
     const int64_t *words;
@@ -252,7 +252,7 @@ static void check_open(const carrier *c, checking *k, bool networked, int32_t le
     check_unknowns(c, k);
 }
 
-/* Whether the letters that a note of a network refers to are there, and of its judge. */
+/* Whether the letters to which a note of a network refers exist and belong to its judge. */
 static bool has_letters(const carrier *c, const judge_plan *judged, int64_t word)
 {
     const int64_t number = word & INT32_MAX;

@@ -2,7 +2,7 @@
 #include "attempts/attempts.h"
 #include "snapshot/snapshot.h"
 
-/* The clocks of a segment, as many as its location has; its attempts are those from `first` on. */
+/* The clocks of a segment, as many as its location has; its attempts start at `first`. */
 static void carry_segment_clocks(carrier *c, const queueing *g, segment *s, int32_t first)
 {
     int32_t i;

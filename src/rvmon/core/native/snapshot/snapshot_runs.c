@@ -1,4 +1,4 @@
-/* A run in a snapshot: inputs, nodes, and what past operators remember. */
+/* A run in a snapshot: inputs, nodes, and the memory of past operators. */
 #include "formulas/formulas.h"
 #include "input/input.h"
 #include "runs/runs.h"
@@ -141,7 +141,7 @@ static void carry_tally(carrier *c, tally *x)
     }
 }
 
-/* Members of windows are in range and ascending, as sums of instants rely on it. */
+/* Demand that members of windows are in range and ascend, as sums of instants rely on that. */
 static void demand_members(carrier *c, const run *r, const stretches *s)
 {
     int64_t behind = -LIMIT;
@@ -155,7 +155,7 @@ static void demand_members(carrier *c, const run *r, const stretches *s)
     demand(c, !s->growing || (s->count > 0));
 }
 
-/* The two rings of a window have the same length. */
+/* Demand that the two rings of a window have the same length. */
 static void demand_windows(carrier *c, const run *r)
 {
     int32_t i;
@@ -169,7 +169,7 @@ static void demand_windows(carrier *c, const run *r)
     }
 }
 
-/* The memory of past operators; a second reading only if it differs. */
+/* The memory of past operators, with a second reading only if it differs. */
 static void carry_past(carrier *c, run *r)
 {
     const part_plan *p = r->part->plan;
@@ -223,9 +223,9 @@ static void carry_nodes(carrier *c, run *r)
     carry_timers(c, &r->wake, p->timers + p->perishable, NULL);
 }
 
-/* Whether the clock of a run is consistent: sums of instants stay in 64 bits, no pending position lies
- * behind the one it is at (or passing time would go backwards or loop), and the outage states fit the
- * time model. */
+/* Whether the clock of a run is consistent: sums of instants stay in 64 bits, no pending position is
+ * before the current one (or passing time would go backwards or loop), and the outage states fit the time
+ * model. */
 static bool is_in_time(const run *r)
 {
     const int64_t gap = GAP(r);
@@ -297,7 +297,7 @@ void carry_run(carrier *c, run *r)
     carry_nodes(c, r);
     demand(c, c->m->finished || is_in_time(r));
     if (c->reading && !is_lost(c)) {
-        clear_judges(r); /* letters are sums over the nodes read */
+        clear_judges(r); /* letters are sums over the nodes that were read */
     }
     if (r->truth_log != NULL) {
         carry_truth_log(c, r);
