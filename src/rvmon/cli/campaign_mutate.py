@@ -7,6 +7,7 @@ import sys
 import time
 from argparse import Namespace
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
@@ -47,7 +48,13 @@ def mutate(campaign: Campaign, robot: str, strategies: Sequence[str], arguments:
         print_mutants(every, Printer(), held_out=arguments.held_out)
         return 0
     folder = output_folder(arguments.out) if arguments.out else None
-    report = _reported(campaign, robot, strategies, mutants, arguments)
+    try:
+        report = _reported(campaign, robot, strategies, mutants, arguments)
+    except BaseException:  # also if interrupted
+        if folder is not None:
+            with suppress(OSError):  # it contains other files
+                folder.rmdir()
+        raise
     if arguments.format == "json":
         say_json(to_json(report.document()).decode().removesuffix("\n"))
     else:

@@ -48,6 +48,20 @@ def test_a_suite_is_scored(campaign, tmp_path, capsys):
     assert "nothing that is recorded differs" in (out / "mutation.html").read_text()
 
 
+@pytest.mark.parametrize("others", [[], ["mine.txt"]])
+def test_who_interrupts_leaves_no_empty_folder(others, campaign, tmp_path, monkeypatch):
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("rvmon.cli.campaign_mutate.record_suite", interrupted)
+    for name in others:
+        (tmp_path / "out").mkdir()
+        (tmp_path / "out" / name).touch()
+    command = ["mutate", "--only", "Lift.note", "--jobs", "1", "--out", str(tmp_path / "out")]
+    assert main(campaign, command) == 130
+    assert (tmp_path / "out").exists() == bool(others)
+
+
 def test_pages_are_fit_for_everybody(campaign, chromium, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     command = ["mutate", "--only", "Lift.note", "--jobs", "1", "--held-out", "--out", "out"]
