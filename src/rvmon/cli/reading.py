@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import os
 import re
-from collections.abc import Collection, Iterator, Sequence
+import stat
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -133,6 +135,28 @@ def opened(spec: Spec, trace: str, *, only: Collection[str] | None = None) -> Fi
             events={name: fields for name, fields in schema.events.items() if name in only},
         )
     return FileRecording(trace, schema, ordered=spec.checked.max_delay is None)
+
+
+@contextmanager
+def noticing_changes(traces: Iterable[str]) -> Iterator[None]:
+    """Warn of recordings that change meanwhile: a command may read them several times."""
+    from rvmon.recordings.places import files_of
+
+    states = {file: _state(file) for trace in traces for file in files_of(trace)}
+    yield
+    for file, state in states.items():
+        if _state(file) != state:
+            warn(f"{file} changed while it was read: verdicts and values may not belong together")
+
+
+def _state(file: str) -> tuple[int, ...] | None:
+    """Device, inode, size and modification time; `None` if there is no such regular file."""
+    try:
+        status = os.stat(file)
+    except OSError:
+        return None
+    state = status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns
+    return state if stat.S_ISREG(status.st_mode) else None
 
 
 ATTEMPT_HELP = (

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from rvmon.cli import evaluation
 from rvmon.cli.options import ids_of, refuse_over
 from rvmon.cli.output import rendered, say_json, warn
-from rvmon.cli.reading import reading_words, refuse_empty, unpacked
+from rvmon.cli.reading import noticing_changes, reading_words, refuse_empty, unpacked
 from rvmon.cli.run_output import write_files, write_results
 from rvmon.errors import RvmonError
 from rvmon.execute import finished_shards
@@ -63,11 +63,12 @@ def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
     known = NONE_KNOWN
     if arguments.known is not None:
         known = KnownFailures(read_known(arguments.known, spec.requirements))
-    judged = _judged(arguments, traces, spec, options, case)
-    _show(arguments, spec, judged)
-    reports = [result.report for result in judged if result.report is not None]
-    _show_known(known, reports)
-    write_files(arguments, spec, judged, known, given if case else "")
+    with noticing_changes(traces):
+        judged = _judged(arguments, traces, spec, options, case)
+        _show(arguments, spec, judged)
+        reports = [result.report for result in judged if result.report is not None]
+        _show_known(known, reports)
+        write_files(arguments, spec, judged, known, given if case else "")
     if before is not None:
         write_run(arguments, spec, judged, before)
     if case is not None:

@@ -39,7 +39,8 @@ def run_why(arguments: argparse.Namespace) -> int:
                 raise RvmonError("a reproducer contains its recording: name only an attempt")
             arguments.attempt = arguments.trace or case.attempt
             arguments.trace = case.recording
-        return _explain(arguments, None if case is None else name_of(case.spec))
+        with reading.noticing_changes([arguments.trace]):
+            return _explain(arguments, None if case is None else name_of(case.spec))
 
 
 def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:

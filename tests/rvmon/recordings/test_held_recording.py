@@ -1,8 +1,10 @@
 """Recordings that are held, and those that are read again as they are too long for that."""
 
+import os
+
 import pytest
 
-from rvmon.cli import why
+from rvmon.cli import run, why
 from rvmon.recordings import held_recording, places
 from rvmon.recordings.held_recording import HeldRecording, held
 from rvmon.report import attempt_panels
@@ -66,3 +68,41 @@ def test_pages_and_reasons_are_those_of_a_recording_that_is_held(monkeypatch, tm
         found.append((said, (tmp_path / "pages" / "a.html").read_text()))
     assert found[0] == found[1]
     assert "gap" in found[0][1]
+
+
+def appended(path):
+    path.write_text(path.read_text() + "9,1,0\n")
+
+
+def replaced(path):
+    """By another file of the same size and time."""
+    other, before = path.with_name("other.csv"), path.stat()
+    other.write_text(path.read_text().replace("1.5", "2.5"))
+    os.utime(other, ns=(before.st_atime_ns, before.st_mtime_ns))
+    os.replace(other, path)
+
+
+@pytest.mark.parametrize("change", [None, appended, replaced])
+@pytest.mark.parametrize(
+    ("module", "step", "words"),
+    [
+        (run, "write_files", ["run", "a.rv", "a.csv", "--report", "pages"]),
+        (why, "dissect", ["why", "a.rv", "a.csv", "R"]),
+    ],
+)
+def test_a_recording_that_is_rewritten_between_two_readings_is_reported(
+    module, step, words, change, monkeypatch, tmp_path, says
+):
+    real = getattr(module, step)
+
+    def after_a_change(*arguments):
+        if change is not None:
+            change(tmp_path / "a.csv")
+        return real(*arguments)
+
+    monkeypatch.setattr(module, step, after_a_change)
+    (tmp_path / "a.rv").write_text(SPEC)
+    (tmp_path / "a.csv").write_text("t,gap,near\n0,1.5,0\n1,1,1\n5,1,1\n")
+    monkeypatch.chdir(tmp_path)
+    told = says(int(words[0] == "run"), *words)
+    assert ("a.csv changed while it was read" in told.err) == (change is not None)
