@@ -64,8 +64,8 @@ def plan(
         if name not in campaign.strategies:
             raise UnknownNameError(f"no strategy `{name}`: there are {known}")
     names = strategies or campaign.strategies
-    generated = {name: _made(campaign, name, tests, seed) for name in names}
-    _refuse_names(campaign, [test for several in generated.values() for test in several])
+    generated = {name: _generate(campaign, name, tests, seed) for name in names}
+    _check_names(campaign, [test for several in generated.values() for test in several])
     return Plan(campaign, seed, generated)
 
 
@@ -80,14 +80,14 @@ def plan_of_folder(campaign: Campaign, folder: str | Path) -> Plan:
     if not paths:
         raise TestError(f"{folder}: no test (.json) in this folder: name one that `--out` wrote")
     tests = [load(path, campaign.test) for path in paths]
-    _refuse_names(campaign, tests)
+    _check_names(campaign, tests)
     by_strategy: dict[str, list[Test]] = {}
     for test in tests:
         by_strategy.setdefault(test.strategy, []).append(test)
     return Plan(campaign, 0, by_strategy)
 
 
-def _refuse_names(campaign: Campaign, tests: Sequence[Test]) -> None:
+def _check_names(campaign: Campaign, tests: Sequence[Test]) -> None:
     """Check that the names of tests and robots can be file names.
 
     Raises:
@@ -103,7 +103,7 @@ def _refuse_names(campaign: Campaign, tests: Sequence[Test]) -> None:
             raise TestError(f"`{name}` cannot be a file name: use letters, digits, - . + _ only")
 
 
-def _made(campaign: Campaign, strategy: str, tests: int, seed: int) -> list[Test]:
+def _generate(campaign: Campaign, strategy: str, tests: int, seed: int) -> list[Test]:
     with blamed(f"strategy `{strategy}` cannot make its tests"):
         generated = [*campaign.strategies[strategy](tests, seed)]
     for test in generated:
@@ -165,7 +165,7 @@ class Results:
     # Reasons why items cannot be hit, by group and item, beyond those that the campaign names.
     unreachable: Mapping[tuple[str, str], str] = field(default_factory=dict)
 
-    def counting(self, robot: str) -> list[Played]:
+    def unmutated(self, robot: str) -> list[Played]:
         """The tests of a robot without a planted fault: only these tell something about it."""
         own = (played for played in self.played if played.job.robot == robot)
         return [played for played in own if played.job.test.mutation is None]
@@ -179,12 +179,12 @@ def accepted_failures(played: Played, expected: Sequence[ExpectedFailure]) -> di
         if verdict == Verdict.FAIL.value
     }
     for why in expected:
-        if is_about(why, played):
+        if applies_to(why, played):
             accepted.setdefault(why.requirement, why.reason)
     return accepted
 
 
-def is_about(why: ExpectedFailure, played: Played) -> bool:
+def applies_to(why: ExpectedFailure, played: Played) -> bool:
     """Whether an expected failure applies to a test; never to one with a planted fault."""
     test = played.job.test
     return (

@@ -23,7 +23,7 @@ from rvmon.report.verdict_table import print_table, table_latex, tables_csv
 from rvmon.texts import percent_text
 from rvmon.verdicts import Verdict
 
-_WIDE = 12
+_WIDEST_NAME = 12
 """A longer strategy name is split at its hyphen into two lines."""
 
 
@@ -66,14 +66,14 @@ def print_summary(
                 heads = summary.kind, what, *figures.strategies
                 _print_shares(heads, columns, printer)
     for figures in summary.robots.values():
-        for line in _known(figures):
+        for line in _directed_lines(figures):
             printer.sentences(line)
 
 
 def _print_in_short(
     figures: RobotSummary, tables: RobotTables, foremost: Sequence[str], printer: Printer
 ) -> None:
-    for line in _known(figures):
+    for line in _directed_lines(figures):
         printer.sentences(line)
     whole = [sum(strategy.statements.values(), NOTHING) for strategy in figures.strategies.values()]
     if any(coverage.statements for coverage in whole):
@@ -82,7 +82,7 @@ def _print_in_short(
         printer.sentences(f"{figures.title}: statements of its code that ran: {listed}")
     if not (figures.requirements and figures.strategies):
         return
-    counts = _together(figures)
+    counts = _counts_of_all(figures)
     rest = {
         name: verdicts
         for name, verdicts in counts.items()
@@ -104,7 +104,7 @@ def _print_in_short(
         )
 
 
-def _together(figures: RobotSummary) -> dict[str, Counter[Verdict]]:
+def _counts_of_all(figures: RobotSummary) -> dict[str, Counter[Verdict]]:
     """Verdicts by requirement under all strategies, without those that directed tests expected."""
     counts: dict[str, Counter[Verdict]] = {name: Counter() for name in figures.requirements}
     for strategy in figures.strategies.values():
@@ -131,7 +131,7 @@ def _print_shares(
     heads: Sequence[str], columns: Sequence[Mapping[str, BlockCoverage]], printer: Printer
 ) -> None:
     """Print the covered share of each block under each strategy."""
-    split = [name.rpartition("-") if len(name) > _WIDE else ("", "", name) for name in heads]
+    split = [name.rpartition("-") if len(name) > _WIDEST_NAME else ("", "", name) for name in heads]
     over = [before for before, _, _ in split] if any(sign for _, sign, _ in split) else []
     rows: list[Sequence[Cell]] = [
         (block, str(first.statements), *(_share(one[block]) for one in columns))
@@ -147,7 +147,7 @@ def _share(block: BlockCoverage) -> str:
     return percent_text(block.covered, block.statements)
 
 
-def _known(figures: RobotSummary) -> Iterator[str]:
+def _directed_lines(figures: RobotSummary) -> Iterator[str]:
     if not figures.known:
         return
     right = sum(answer.as_expected for answer in figures.known)

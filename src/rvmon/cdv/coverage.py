@@ -83,7 +83,7 @@ def write_database(path: Path, robot: str, played: Sequence[Played], results: Re
     path.parent.mkdir(parents=True, exist_ok=True)
     path.unlink(missing_ok=True)
     with Database.open(path) as database:
-        database.declare(_with_the_rest(model, played))
+        database.declare(_with_undeclared(model, played))
         argued = unreachable_items(campaign, robot, model)
         for (group, item), reason in {**argued, **results.unreachable}.items():
             database.exclude(group, item, reason)
@@ -108,7 +108,7 @@ def write_database(path: Path, robot: str, played: Sequence[Played], results: Re
             database.record(record, outcome.hits)
 
 
-def _with_the_rest(model: Model, played: Sequence[Played]) -> Model:
+def _with_undeclared(model: Model, played: Sequence[Played]) -> Model:
     """A model with the undeclared items that were hit; these are shown, but are not goals."""
     groups: dict[str, Group] = dict(model.groups)
     for test_run in played:
@@ -136,7 +136,7 @@ def write_coverage(
     campaign = results.plan.campaign
     figures = {}
     for robot, path in database_paths(folder, campaign.robots).items():
-        played = results.counting(robot)
+        played = results.unmutated(robot)
         write_database(path, robot, played, results)
         up = "../" * len(path.parent.relative_to(folder).parts)
         addresses = {test: f"{up}{page}" for (of, test), page in pages.items() if of == robot}

@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from rvmon.cdv.campaign import STRATEGY, Campaign, ExpectedFailure, Gate, unreachable_items
-from rvmon.cdv.campaign_plan import Played, Results, accepted_failures, is_about
+from rvmon.cdv.campaign_plan import Played, Results, accepted_failures, applies_to
 from rvmon.cdv.campaign_summary import differences, missed
 from rvmon.cdv.coverage import coverage_model, covered_share
 from rvmon.cdv.sequential_test import Decision
@@ -100,18 +100,18 @@ def judge_campaign(
     checks: dict[str, str] = {}
     if not results.cut_short:
         checks |= _expected_failures(expected, results.played)
-        checks |= dict(_contradicted(results))
-        checks |= dict(_unlisted(results))
-        checks |= dict(_gated(results, requirements)) if strict else {}
+        checks |= dict(_unreachable_hits(results))
+        checks |= dict(_unlisted_states(results))
+        checks |= dict(_gate_checks(results, requirements)) if strict else {}
         for (robot, name), by_strategy in decisions.items():
             known = (one.requirement == name and one.robot in ("", robot) for one in expected)
             if not any(known):
                 share = next(iter(by_strategy.values())).share
-                checks[f"{name} {share} ({robot})"] = _undecided(by_strategy, strict=strict)
+                checks[f"{name} {share} ({robot})"] = _share_fault(by_strategy, strict=strict)
     return CampaignJudgement(tests, checks, results.cut_short)
 
 
-def _undecided(decisions: Mapping[str, Decision], *, strict: bool) -> str:
+def _share_fault(decisions: Mapping[str, Decision], *, strict: bool) -> str:
     """What is wrong with a share of runs; empty if it holds, or is undecided and not `strict`."""
     found = decisions.items()
     rejected = [f"under {name} it {one}" for name, one in found if one.holds is False]
@@ -171,7 +171,7 @@ def _expected_failures(
         verdicts = [
             test_run.outcome.verdicts[why.requirement]
             for test_run in played
-            if why.requirement in test_run.outcome.verdicts and is_about(why, test_run)
+            if why.requirement in test_run.outcome.verdicts and applies_to(why, test_run)
         ]
         if verdicts:
             tests = counted(len(verdicts), "test")
@@ -186,7 +186,7 @@ def _named(why: ExpectedFailure) -> str:
     return " of ".join([why.requirement, *named])
 
 
-def _contradicted(results: Results) -> Iterator[tuple[str, str]]:
+def _unreachable_hits(results: Results) -> Iterator[tuple[str, str]]:
     """Check that no test hit an item that is declared unreachable."""
     campaign = results.plan.campaign
     if not campaign.closing.unreachable:
@@ -196,7 +196,7 @@ def _contradicted(results: Results) -> Iterator[tuple[str, str]]:
         first = {
             f"{group}: {item}": test_run.job.test.name
             # Reversed, so that the first of several tests is the one named.
-            for test_run in reversed(results.counting(robot))
+            for test_run in reversed(results.unmutated(robot))
             for group, items in test_run.outcome.hits.items()
             for item in items
             if (group, item) in out
@@ -205,13 +205,13 @@ def _contradicted(results: Results) -> Iterator[tuple[str, str]]:
         yield f"no test hits an item that is declared unreachable ({robot})", wrong
 
 
-def _unlisted(results: Results) -> Iterator[tuple[str, str]]:
+def _unlisted_states(results: Results) -> Iterator[tuple[str, str]]:
     """Check that no state was entered that the campaign does not list, if it lists any."""
     campaign = results.plan.campaign
     for robot in campaign.robots if campaign.states else ():
         first = {
             state: test_run.job.test.name
-            for test_run in reversed(results.counting(robot))
+            for test_run in reversed(results.unmutated(robot))
             for state in test_run.outcome.hits.get(STATES, {}).keys() - {*campaign.states}
         }
         if first:
@@ -225,14 +225,14 @@ def _gate_name(campaign: Campaign, played: Played) -> str:
     return strategy if strategy in campaign.gates else ""
 
 
-def _gated(
+def _gate_checks(
     results: Results, requirements: Mapping[str, Sequence[str]]
 ) -> Iterator[tuple[str, str]]:
     """The conditions of gates on all their tests together, each with its violation."""
     campaign = results.plan.campaign
     groups: dict[tuple[str, str], list[Played]] = {}
     for robot in campaign.robots:
-        for test_run in results.counting(robot):
+        for test_run in results.unmutated(robot):
             key = robot, _gate_name(campaign, test_run)
             groups.setdefault(key, []).append(test_run)
     for (robot, strategy), tests in groups.items():

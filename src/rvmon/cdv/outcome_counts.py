@@ -34,14 +34,14 @@ def summarise(results: Results, specs: Mapping[str, Spec]) -> campaign_summary.C
         requirements = {} if (spec := specs.get(name)) is None else spec.requirements
         played = [played for played in results.played if played.job.robot == name]
         by_strategy: dict[str, list[Played]] = {}
-        for test_run in results.counting(name):
+        for test_run in results.unmutated(name):
             by_strategy.setdefault(test_run.job.test.strategy, []).append(test_run)
         robots[name] = campaign_summary.RobotSummary(
             title=robot.title or name,
-            spec=robot.spec_name or _shown(robot.spec),
+            spec=robot.spec_name or _display_path(robot.spec),
             requirements={key: one.text for key, one in requirements.items()},
             strategies={
-                strategy: _strategy(several, requirements, groups, blocks)
+                strategy: _strategy_summary(several, requirements, groups, blocks)
                 for strategy, several in by_strategy.items()
             },
             controls={
@@ -71,13 +71,13 @@ def summarise(results: Results, specs: Mapping[str, Spec]) -> campaign_summary.C
         cut_short=results.cut_short,
         seconds=results.seconds,
         simulated_s=sum(outcome.simulated_s for outcome in outcomes),
-        figures=_sums(outcomes),
+        figures=_summed_figures(outcomes),
         kind="" if campaign.code is None else campaign.code.kind,
         control="" if campaign.control is None else campaign.control.name,
     )
 
 
-def _shown(path: str | Path | None) -> str:
+def _display_path(path: str | Path | None) -> str:
     """A path, relative to the working directory if it is below it."""
     here = Path.cwd()
     if path is None or not Path(path).is_relative_to(here):
@@ -85,7 +85,7 @@ def _shown(path: str | Path | None) -> str:
     return str(Path(path).relative_to(here))
 
 
-def _strategy(
+def _strategy_summary(
     played: Sequence[Played],
     requirements: Mapping[str, Requirement],
     groups: Mapping[str, Group],
@@ -105,10 +105,10 @@ def _strategy(
         counts=_counts(outcomes, requirements),
         statements=statements,
         branches=branches,
-        states=_counted(groups[STATES], outcomes),
+        states=_tests_per_item(groups[STATES], outcomes),
         transitions={
             code_coverage.source_and_target(name): tests
-            for name, tests in _counted(groups[TRANSITIONS], outcomes).items()
+            for name, tests in _tests_per_item(groups[TRANSITIONS], outcomes).items()
         },
         errors={
             ending: {
@@ -119,17 +119,17 @@ def _strategy(
             for ending in Ending
             if ending != Ending.COMPLETED
         },
-        figures=_sums(outcomes),
+        figures=_summed_figures(outcomes),
         simulated_s=sum(outcome.simulated_s for outcome in outcomes),
         shares={
-            name: decide(requirement.run_share, _drawn(name, played))
+            name: decide(requirement.run_share, _random_verdicts(name, played))
             for name, requirement in requirements.items()
             if requirement.run_share is not None
         },
     )
 
 
-def _drawn(requirement: str, played: Sequence[Played]) -> Iterator[Verdict]:
+def _random_verdicts(requirement: str, played: Sequence[Played]) -> Iterator[Verdict]:
     """The verdicts of tests that state no expected one, as directed tests are no random samples."""
     for test_run in played:
         if requirement not in test_run.job.test.expected:
@@ -148,23 +148,23 @@ def _tests_that_hit(group: str, outcomes: Sequence[Outcome]) -> Counter[str]:
     return Counter(item for outcome in outcomes for item in outcome.hits.get(group, ()))
 
 
-def _counted(group: Group, outcomes: Sequence[Outcome]) -> dict[str, int]:
+def _tests_per_item(group: Group, outcomes: Sequence[Outcome]) -> dict[str, int]:
     """The number of tests that hit each item: first all goals, then other items that were hit."""
-    return {**dict.fromkeys(_sought(group), 0), **_tests_that_hit(group.name, outcomes)}
+    return {**dict.fromkeys(_goals_of(group), 0), **_tests_that_hit(group.name, outcomes)}
 
 
 def _coverage(group: Group, outcomes: Sequence[Outcome]) -> campaign_summary.BlockCoverage:
     hit = _tests_that_hit(group.name, outcomes)
-    sought = _sought(group)
+    sought = _goals_of(group)
     missing = tuple(item for item in sought if item not in hit)
     return campaign_summary.BlockCoverage(len(sought), len(sought) - len(missing), missing)
 
 
-def _sought(group: Group) -> list[str]:
+def _goals_of(group: Group) -> list[str]:
     """The items that are goals."""
     return [name for name, item in group.items.items() if item.kind is BinKind.GOAL]
 
 
-def _sums(outcomes: Sequence[Outcome]) -> dict[str, float]:
+def _summed_figures(outcomes: Sequence[Outcome]) -> dict[str, float]:
     names = dict.fromkeys(name for outcome in outcomes for name in outcome.figures)
     return {name: sum(outcome.figures.get(name, 0) for outcome in outcomes) for name in names}

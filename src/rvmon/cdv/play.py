@@ -57,7 +57,7 @@ def player(
         bench, keeps = benches[job.robot], spool is not None
         recorded = bench.play(job.test, keeps=keeps, wants_scene=keeps)
         if spool is not None:
-            spooled(spool, job).write_bytes(pickle.dumps(recorded))
+            recording_path(spool, job).write_bytes(pickle.dumps(recorded))
         outcome = outcome_of(recorded)
         with blamed(f"test `{job.test.name}`: its control cannot be made"):
             variant = None if control is None else control(job.test)
@@ -66,7 +66,7 @@ def player(
     return played
 
 
-def spooled(spool: Path, job: Job) -> Path:
+def recording_path(spool: Path, job: Job) -> Path:
     """The file of a test's recording."""
     return spool / f"{job.robot}-{job.test.name}"
 
@@ -272,12 +272,12 @@ def outcomes(
         partial(player, campaign.robots, campaign.code, control, spool),
         jobs=jobs or os.cpu_count() or 1,
         what="test",
-        instead=partial(_without_result, campaign.robots),
+        instead=partial(_outcome_of_ended, campaign.robots),
         timeout_s=campaign.timeout_s,
     )
 
 
-class Waiting(Iterator[Job]):
+class JobQueue(Iterator[Job]):
     """A queue of tests to play; it can be refilled after it ran empty, for batches of tests."""
 
     def __init__(self) -> None:
@@ -302,8 +302,8 @@ class PlayerApart:
     def __init__(self, campaign: Campaign, robot: str) -> None:
         self._campaign = replace(campaign, robots={robot: campaign.robots[robot]}, code=None)
         self._robot = robot
-        self._waiting = Waiting()
-        self._results = self._begun()
+        self._waiting = JobQueue()
+        self._results = self._start()
 
     def play(self, test: Test) -> Outcome:
         """Play a test and return its outcome.
@@ -316,18 +316,18 @@ class PlayerApart:
         try:
             return next(self._results)[0]
         except TestError:  # a generator that has raised gives nothing more
-            self._results = self._begun()
+            self._results = self._start()
             raise
 
     def close(self) -> None:
         """End the process."""
         self._results.close()
 
-    def _begun(self) -> Generator[tuple[Outcome, Outcome | None], None, None]:
+    def _start(self) -> Generator[tuple[Outcome, Outcome | None], None, None]:
         return outcomes(self._campaign, self._waiting, jobs=1, controls=False)
 
 
-def _without_result(robots: Mapping[str, Robot], job: Job, ended: Ended) -> tuple[Outcome, None]:
+def _outcome_of_ended(robots: Mapping[str, Robot], job: Job, ended: Ended) -> tuple[Outcome, None]:
     """The outcome of a test whose process ended; all its verdicts are inconclusive."""
     ending = Ending.HUNG if ended.timed_out else Ending.LOST
     spec = robots[job.robot].requirements

@@ -16,7 +16,7 @@ from rvmon.cdv.campaign_plan import Job, Played, Results
 from rvmon.cdv.campaign_summary import CampaignSummary
 from rvmon.cdv.campaign_text import RUNS, TESTS, typed
 from rvmon.cdv.coverage import write_coverage
-from rvmon.cdv.play import Bench, Recorded, spooled
+from rvmon.cdv.play import Bench, Recorded, recording_path
 from rvmon.cdv.shrink import failure_of
 from rvmon.cdv.tables import RobotTables
 from rvmon.cdv.test import Test
@@ -143,7 +143,7 @@ def write_pages(
         if (played.job.robot, played.job.test.name) in shown and played.job.robot in judged
     ]
     written = parallel.execute(
-        [_page_of(played, folder, results) for played in wanted],
+        [_page_to_write(played, folder, results) for played in wanted],
         partial(_writer, folder, campaign.robots, judged, spool),
         jobs=jobs or os.cpu_count() or 1,
         what="page",
@@ -192,7 +192,7 @@ class _Page:
     shrink: str  # the command line that shrinks it; empty: it cannot be shrunk, or does not fail
 
 
-def _page_of(played: Played, folder: Path, results: Results) -> _Page:
+def _page_to_write(played: Played, folder: Path, results: Results) -> _Page:
     campaign = results.plan.campaign
     verdicts = played.outcome.verdicts
     failed = [name for name, verdict in verdicts.items() if verdict is Verdict.FAIL]
@@ -218,13 +218,13 @@ def _writer(
         key = job.robot, job.test.name
         if key not in compared:
             bench = benches[job.robot]
-            again = _spooled(spool, job) or play_again(job.test, bench, wants_scene=False)
+            again = _recording_of(spool, job) or play_again(job.test, bench, wants_scene=False)
             compared[key] = again.judged
         return compared[key]
 
     def write(page: _Page) -> Mapping[str, Verdict]:
         robot = page.job.robot
-        replay = _spooled(spool, page.job) or play_again(page.job.test, benches[robot])
+        replay = _recording_of(spool, page.job) or play_again(page.job.test, benches[robot])
         text = replay_page(
             replay,
             robot,
@@ -240,9 +240,9 @@ def _writer(
     return write
 
 
-def _spooled(spool: Path | None, job: Job) -> Replay | None:
+def _recording_of(spool: Path | None, job: Job) -> Replay | None:
     """The recording of a test, or `None` if it was played elsewhere or in an earlier session."""
-    if spool is None or not (path := spooled(spool, job)).exists():
+    if spool is None or not (path := recording_path(spool, job)).exists():
         return None
     recorded: Recorded = pickle.loads(path.read_bytes())  # noqa: S301 - a folder of this process
     return Replay(job.test, recorded)

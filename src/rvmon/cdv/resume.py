@@ -88,7 +88,7 @@ def unfinished(
         for one in (*shards, path):
             left = journal.entries(one)
             entries = [msgspec.json.encode(heading)] if left is None else left
-            _refuse_another(one, entries[:1], heading)
+            _check_same_campaign(one, entries[:1], heading)
             ordered = list(_in_order(entries[1:], places))
             for key, entry in ordered:
                 known[key] = Played(jobs[key], entry.outcome, entry.control)
@@ -114,7 +114,7 @@ def _in_order(
         yield key, one
 
 
-def _refuse_another(path: Path, heading: Sequence[bytes], wanted: _Heading) -> None:
+def _check_same_campaign(path: Path, heading: Sequence[bytes], wanted: _Heading) -> None:
     try:
         kept = msgspec.json.decode(b"".join(heading), type=_Heading)
     except msgspec.DecodeError:

@@ -179,7 +179,7 @@ def project(
     Raises:
         TestError: `actions` names an edge that does not exist, or that is ambiguous.
     """
-    does = _by_edge(network, actions)
+    does = _actions_by_edge(network, actions)
     timing = run.timing
     assert timing is not None, "the model checker knows the timing of its runs"
     instants, texts, taken = [0], [""], list[Action | None]([None])
@@ -198,19 +198,19 @@ def project(
         for row in timing.relation(instants).tolist()
     ]
     steps = tuple(
-        TemplateStep(texts[now], _wait(within, now - 1, now), taken[now])
+        TemplateStep(texts[now], _wait_between(within, now - 1, now), taken[now])
         for now in range(1, len(instants))
     )
     limits = tuple(
         Limit(first, last, wait)
         for first in range(len(instants))
         for last in range(first + 2, len(instants))
-        if (wait := _wait(within, first, last)) != Wait(0)
+        if (wait := _wait_between(within, first, last)) != Wait(0)
     )
     return steps, limits
 
 
-def _by_edge(
+def _actions_by_edge(
     network: Network, actions: Mapping[Edge, Action]
 ) -> dict[tuple[int, NetworkEdge], Action]:
     """The action for each edge that has one, by the index of its automaton and the edge."""
@@ -238,7 +238,7 @@ def _name_of(network: Network, place: int, edge: NetworkEdge) -> tuple[str, str,
     return automaton.name, source, target, edge.label or channel
 
 
-def _wait(within: Sequence[Sequence[float]], first: int, last: int) -> Wait:
+def _wait_between(within: Sequence[Sequence[float]], first: int, last: int) -> Wait:
     """The limits between two instants, without those implied by an instant in between."""
     middle = range(first + 1, last)
     low, high = -within[last][first], within[first][last]

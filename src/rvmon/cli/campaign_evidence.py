@@ -63,7 +63,7 @@ def write_campaign(
     covered = {
         robot: (
             coverage_model(campaign, robot),
-            [played.outcome.hits for played in results.counting(robot)],
+            [played.outcome.hits for played in results.unmutated(robot)],
         )
         for robot in campaign.robots
     }

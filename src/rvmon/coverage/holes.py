@@ -45,7 +45,7 @@ def nearness(goal: Goal, hits: Hits, model: Model) -> float:
     seen = hits.get(group.name, {})
     match group.subject:
         case Subject.CROSS:
-            return _in_common(cross_parts(goal[1]), seen) / max(1, len(group.axes))
+            return _most_in_common(cross_parts(goal[1]), seen) / max(1, len(group.axes))
         case Subject.TRANSITIONS:
             return _near_transition(goal, hits)
         case Subject.STATEMENTS | Subject.BRANCHES:
@@ -63,7 +63,7 @@ def cross_parts(name: str) -> list[str]:
     return [quoted or plain for quoted, plain in _PART.findall(name)]
 
 
-def _in_common(bins: Sequence[str], seen: Iterable[str]) -> int:
+def _most_in_common(bins: Sequence[str], seen: Iterable[str]) -> int:
     """The most bins that a combination shares with any of those in `seen`."""
     met = (sum(map(eq, bins, cross_parts(name))) for name in seen)
     return max(met, default=0)
@@ -162,7 +162,7 @@ def _of_cross(group: Group, name: str, model: Model, hits: Hits) -> tuple[str, s
         for axis, bin_ in named
         if axis in model.groups and not count_of(hits, axis, bin_)
     ]
-    most = _in_common(bins, hits.get(group.name, {}))
+    most = _most_in_common(bins, hits.get(group.name, {}))
     why = f"no run has shown {' or '.join(never)}"
     if not never:
         why = f"each was seen, but at most {most} of {len(bins)} at once"

@@ -243,7 +243,7 @@ class WatchedRequirements:
             judged_attempts = attempts[name]
             hits = dict(_of_attempts(judged_attempts, watched.deadline))
             for key, variant in self._variants[name].items():
-                hits |= _hit(decides(variant.part), _apart(judged_attempts, attempts[key]))
+                hits |= _hit(decides(variant.part), _differing(judged_attempts, attempts[key]))
             yield name, hits
             if watched.graph is not None:
                 yield from _passages(watched.graph, name, passages[name])
@@ -282,7 +282,7 @@ def _of_attempts(attempts: Sequence[Judged], deadline: int | None) -> Iterator[t
     yield from _hit(AFTER, late).items()
 
 
-def _apart(originals: Iterable[Judged], variants: Iterable[Judged]) -> list[int]:
+def _differing(originals: Iterable[Judged], variants: Iterable[Judged]) -> list[int]:
     """The instants of attempts that only one of two requirements has, or that they decide apart."""
     first, second = (
         {

@@ -17,7 +17,7 @@ from rvmon.cdv.close.goals import Goals, Witnesses
 from rvmon.cdv.close.outcome import Added, Closed
 from rvmon.cdv.close.propose import Proposer
 from rvmon.cdv.coverage import coverage_model
-from rvmon.cdv.play import INTERRUPTED, Waiting, outcomes
+from rvmon.cdv.play import INTERRUPTED, JobQueue, outcomes
 from rvmon.coverage import Ending, model_of
 from rvmon.coverage.ranking import Smallest, smallest
 from rvmon.verdicts import Verdict
@@ -95,7 +95,7 @@ def close(
     names = strategies or campaign.closing.strategies or tuple(campaign.strategies)
     proposer = Proposer(campaign, robot, goals, names, seed, witnesses)
     tests: list[Added] = []
-    waiting = Waiting()
+    waiting = JobQueue()
     ended = ""
     try:
         with closing(outcomes(campaign, waiting, jobs=jobs, controls=False)) as results:
@@ -125,7 +125,7 @@ def close(
     for times in range(1, margin + 1):
         smallest_set = _smallest(tests, goals, times)
         choices[times] = [tests[place].played.job.test.name for place in smallest_set.places]
-    kept = {*smallest_set.places, *_gone_wrong(tests)}
+    kept = {*smallest_set.places, *_first_failures(tests)}
     return Closed(
         tests=tests,
         suite=[test.played for place, test in enumerate(tests) if place in kept],
@@ -173,7 +173,7 @@ def _smallest(tests: Sequence[Added], goals: Goals, times: int) -> Smallest:
     return smallest(rows, wanted)
 
 
-def _gone_wrong(tests: Sequence[Added]) -> Iterator[int]:
+def _first_failures(tests: Sequence[Added]) -> Iterator[int]:
     """The places of the first test with each failed requirement, illegal hit and bad ending."""
     seen: set[str] = set()
     for place, test in enumerate(tests):

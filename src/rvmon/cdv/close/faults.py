@@ -48,11 +48,11 @@ def with_mutants(
     """
     played = [test.played.job.test for test in closed.tests]
     suite = record_suite(campaign, robot, played, jobs=jobs)
-    drawn = _drawn(mutated_code(campaign), mutants)
+    drawn = _sample(mutated_code(campaign), mutants)
     steps = len(closed.choices) + 3
 
     def killers(names: Sequence[str], mutants_played: Sequence[Mutant], step: int) -> Killers:
-        found = _killers(_only(suite, names), mutants_played, jobs)
+        found = _killers(_subset(suite, names), mutants_played, jobs)
         progress(step / steps)
         return found
 
@@ -65,7 +65,7 @@ def with_mutants(
     missed = [mutant for mutant in drawn if mutant.identity not in kills]
     others = [name for name in suite.tests if name not in kept]
     by_others = killers(others, missed, steps - 2)
-    added = _fewest(
+    added = _fewest_tests(
         killers(
             list(dict.fromkeys(name for names in by_others.values() for name in names)),
             [
@@ -92,7 +92,7 @@ def with_mutants(
     )
 
 
-def _drawn(code: Code, count: int) -> list[Mutant]:
+def _sample(code: Code, count: int) -> list[Mutant]:
     """`count` mutants, or all if there are fewer, spread evenly over the code."""
     all_mutants = code_mutants(code)
     known = {} if code.equivalent is None else equivalents(code.equivalent, all_mutants)
@@ -101,7 +101,7 @@ def _drawn(code: Code, count: int) -> list[Mutant]:
     return [left[place * len(left) // count] for place in range(count)]
 
 
-def _only(suite: Suite, names: Sequence[str]) -> Suite:
+def _subset(suite: Suite, names: Sequence[str]) -> Suite:
     tests = {name: suite.tests[name] for name in names if name in suite.tests}
     return replace(suite, tests=tests, recorded={name: suite.recorded[name] for name in tests})
 
@@ -117,7 +117,7 @@ def _killers(suite: Suite, mutants: Sequence[Mutant], jobs: int) -> Killers:
     }
 
 
-def _fewest(killers: Killers) -> list[str]:
+def _fewest_tests(killers: Killers) -> list[str]:
     mutants = [identity for identity, names in killers.items() if names]
     tests = sorted({name for names in killers.values() for name in names})
     rows = [

@@ -65,7 +65,9 @@ class Goals:
     @property
     def sought(self) -> dict[Goal, int]:
         """The number of hits needed, by item; without unreachable items."""
-        return {goal: count for goal, count in self.wanted.items() if not self._is_out(goal)}
+        return {
+            goal: count for goal, count in self.wanted.items() if not self._is_unreachable(goal)
+        }
 
     @property
     def open(self) -> list[Goal]:
@@ -93,7 +95,7 @@ class Goals:
         nearest = nearest_tests(self.open, self._seen, self.model)
         return {goal: hole_of(goal, self.model, hits, nearest.get(goal, "")) for goal in self.open}
 
-    def _is_out(self, goal: Goal) -> bool:
+    def _is_unreachable(self, goal: Goal) -> bool:
         """Whether an item is proved or declared unreachable."""
         return goal in self.proved or goal in self.argued
 
@@ -108,7 +110,7 @@ class Goals:
                     continue
                 before = self.is_met(goal)
                 self._counts[goal] = self._counts.get(goal, 0) + hit.count
-                if self._is_out(goal):
+                if self._is_unreachable(goal):
                     self.wrong.setdefault(goal, test)
                 elif self.is_met(goal) and not before:
                     added.append(goal)
@@ -150,7 +152,7 @@ class Witnesses:
         self._model = model
         self._describes = describes
         self._answers: dict[str, Witness | Proof | None] = {}
-        self._astray: dict[Goal, tuple[str, str]] = {}
+        self._divergences: dict[Goal, tuple[str, str]] = {}
 
     @cached_property
     def _network(self) -> Network:
@@ -194,9 +196,9 @@ class Witnesses:
         """
         query = self._model.query(*goal)
         if not query and goal[0] == EDGES:
-            return self._on_edge(goal[1])
+            return self._edge_answer(goal[1])
         if query and query not in self._answers:
-            self._answers[query] = self._asked(query)
+            self._answers[query] = self._verify(query)
         return self._answers.get(query)
 
     def test(self, witness: Witness, name: str, seed: int) -> Test:
@@ -227,12 +229,12 @@ class Witnesses:
         edges = [self._names[taken] for taken in _edges_of(witness.run)]
         visited = hits.get(STATES, {})
         went = sorted(visited, key=lambda state: visited[state].first or 0)
-        for came, planned in zip_longest(went, self._course(witness.run)):
+        for came, planned in zip_longest(went, self._states_of(witness.run)):
             if planned is not None and came != planned:
                 entered = "no further state" if came is None else f"`{came}`"
                 why = f"a test of a run that takes it enters {entered} where the run enters "
                 for edge in edges:
-                    self._astray.setdefault((EDGES, edge), (f"{why}`{planned}`", test))
+                    self._divergences.setdefault((EDGES, edge), (f"{why}`{planned}`", test))
                 return {}
         return {EDGES: dict.fromkeys(edges, Hit(1))}
 
@@ -242,10 +244,10 @@ class Witnesses:
         return {
             goal: replace(hole, why=why, needs=needs, nearest=test) if test else hole
             for goal, hole in holes.items()
-            for why, test in [self._astray.get(goal, ("", ""))]
+            for why, test in [self._divergences.get(goal, ("", ""))]
         }
 
-    def _course(self, run: Run) -> list[str]:
+    def _states_of(self, run: Run) -> list[str]:
         """The states of the system in a run, in the order of their first entry."""
         names = [automaton.name for automaton in self._network.automata]
         robot = names.index(self._model.automaton)
@@ -255,7 +257,7 @@ class Witnesses:
         states = map(self._model.states.get, visited)
         return [*dict.fromkeys(state for state in states if state is not None)]
 
-    def _on_edge(self, name: str) -> Witness | Proof | None:
+    def _edge_answer(self, name: str) -> Witness | Proof | None:
         """A run that takes an edge, from a suite that covers all reachable edges."""
         suite = self._suite
         for run, _ in suite.runs:
@@ -263,7 +265,7 @@ class Witnesses:
                 return Witness(run, f"the edge {name}")
         return None if suite.stopped else Proof(f"the edge {name}")
 
-    def _asked(self, query: str) -> Witness | Proof | None:
+    def _verify(self, query: str) -> Witness | Proof | None:
         from rvmon.models.search.budget import Budget
         from rvmon.models.search.verify import verify
 

@@ -95,9 +95,9 @@ class Proposer:
             goal = min(goals, key=lambda one: (one in aimed, self._tries[one], self._rank(one)))
             self._tries[goal] += 1
             aimed.add(goal)
-            proposal = self._following(goal)
+            proposal = self._from_model(goal)
             if proposal is None and goal not in self._goals.proved:
-                proposal = self._by_chance(goal)
+                proposal = self._without_model(goal)
             if proposal is not None:
                 proposals.append(proposal)
         return proposals
@@ -121,7 +121,7 @@ class Proposer:
         places = [place for place, one in enumerate(_SPECIFIC_FIRST) if one is subject]
         return not is_known, places[0] if places else len(_SPECIFIC_FIRST)
 
-    def _following(self, goal: Goal) -> Proposal | None:
+    def _from_model(self, goal: Goal) -> Proposal | None:
         """A test that follows a run of the model to a goal; if none exists, notes the proof."""
         answer = None if self._witnesses is None else self._witnesses.answer(goal)
         if isinstance(answer, Proof):
@@ -130,29 +130,31 @@ class Proposer:
             return None
         assert self._witnesses is not None, "it has answered"
         self._followed[answer.query] += 1
-        name, seed = self._name(), self._rng.getrandbits(32)
+        name, seed = self._next_name(), self._rng.getrandbits(32)
         origin = f"a run of the model that shows {answer.query}"
         witnesses = self._witnesses
-        test = self._by_campaign("closing.model.make", lambda: witnesses.test(answer, name, seed))
-        return Proposal(self._named(test, name, origin), origin, goal, (), answer)
+        test = self._made_by_campaign(
+            "closing.model.make", lambda: witnesses.test(answer, name, seed)
+        )
+        return Proposal(self._renamed(test, name, origin), origin, goal, (), answer)
 
-    def _by_chance(self, goal: Goal) -> Proposal | None:
+    def _without_model(self, goal: Goal) -> Proposal | None:
         """The next written test, or a changed, biased or drawn one; `None` if none can be made."""
         drawn: list[Draw] = []
         written = next(self._written, None)
         if written is not None:
-            return self._taken(written, goal, drawn)
+            return self._as_proposal(written, goal, drawn)
         ways = [*(["draw"] if self._streams else []), *(["change"] if self._tests else [])]
         ways += ["bias"] if self._campaign.closing.biased is not None else []
         way = self._learned.choose(self._rng, "way", ways, drawn) if ways else ""
         proposal = None
         if way == "change":
-            proposal = self._changed(goal, drawn)
+            proposal = self._from_change(goal, drawn)
         elif way == "bias":
-            proposal = self._biased(goal, drawn)
-        return proposal or self._drawn(goal, drawn)
+            proposal = self._from_choices(goal, drawn)
+        return proposal or self._from_strategy(goal, drawn)
 
-    def _changed(self, goal: Goal, drawn: list[Draw]) -> Proposal | None:
+    def _from_change(self, goal: Goal, drawn: list[Draw]) -> Proposal | None:
         """One of the tests that came nearest to a goal, changed."""
         nearest = self._rng.choice(self._nearest(goal)).job.test
         others = [test.job.test for test in self._tests]
@@ -162,9 +164,9 @@ class Proposer:
         origin = f"{nearest.name}, changed towards {goal[0]}: {goal[1]}"
         # The expectations of the nearest test do not apply to the changed test.
         made = structs.replace(made, expected={}, reaches={})
-        return Proposal(self._named(made, self._name(), origin), origin, goal, drawn)
+        return Proposal(self._renamed(made, self._next_name(), origin), origin, goal, drawn)
 
-    def _biased(self, goal: Goal, drawn: list[Draw]) -> Proposal | None:
+    def _from_choices(self, goal: Goal, drawn: list[Draw]) -> Proposal | None:
         """A test of `Closing.biased`, which prefers the choices of the tests nearest to a goal."""
         if self._campaign.closing.biased is None:
             return None
@@ -174,22 +176,22 @@ class Proposer:
             return self._learned.choose(self._rng, name, options, drawn, near)
 
         biased, seed = self._campaign.closing.biased, self._rng.getrandbits(32)
-        test = self._by_campaign("closing.biased", lambda: biased(choose, seed))
+        test = self._made_by_campaign("closing.biased", lambda: biased(choose, seed))
         origin = f"choices biased towards {goal[0]}: {goal[1]}"
-        return Proposal(self._named(test, self._name(), origin), origin, goal, drawn)
+        return Proposal(self._renamed(test, self._next_name(), origin), origin, goal, drawn)
 
-    def _drawn(self, goal: Goal, drawn: list[Draw]) -> Proposal | None:
+    def _from_strategy(self, goal: Goal, drawn: list[Draw]) -> Proposal | None:
         while self._streams:
             name = self._learned.choose(self._rng, "strategy", [*self._streams], drawn)
             new = next(self._streams[name], None)
             if new is not None:
-                return self._taken(new, goal, drawn)
+                return self._as_proposal(new, goal, drawn)
             del self._streams[name]
         return None
 
-    def _taken(self, test: Test, goal: Goal, drawn: Sequence[Draw]) -> Proposal:
+    def _as_proposal(self, test: Test, goal: Goal, drawn: Sequence[Draw]) -> Proposal:
         origin = f"{test.name} of {test.strategy}"
-        return Proposal(self._named(test, self._name(), origin), origin, goal, drawn)
+        return Proposal(self._renamed(test, self._next_name(), origin), origin, goal, drawn)
 
     def _nearest(self, goal: Goal) -> list[Played]:
         """The tests nearest to a goal, by `nearness`; ties are broken at random."""
@@ -200,7 +202,7 @@ class Proposer:
             lambda played: (nearness(goal, played.outcome.hits, model), rng.random()),
         )
 
-    def _by_campaign(self, what: str, make: Callable[[], Test]) -> Test:
+    def _made_by_campaign(self, what: str, make: Callable[[], Test]) -> Test:
         """A test that a function of the campaign makes.
 
         Raises:
@@ -214,11 +216,11 @@ class Proposer:
             raise TestError(f"`{what}` of the campaign makes {test!r}, which is not a {name}")
         return test
 
-    def _name(self) -> str:
+    def _next_name(self) -> str:
         self._made += 1
         return f"{STRATEGY}-{self._made:03}"
 
-    def _named(self, test: Test, name: str, origin: str) -> Test:
+    def _renamed(self, test: Test, name: str, origin: str) -> Test:
         named = structs.replace(test, name=name, strategy=STRATEGY, text=origin)
         kind = self._campaign.test
         try:

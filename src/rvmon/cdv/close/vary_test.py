@@ -73,13 +73,13 @@ ATTEMPTS = 50
 CHANGES = (1, 1, 2, 3)
 """The numbers of changes made at once; one is as likely as two and three together."""
 
-_KEPT = frozenset({"name", "strategy", "text", "robot", "mutation", "expected"})
+_DESCRIPTIVE = frozenset({"name", "strategy", "text", "robot", "mutation", "expected"})
 """Fields that describe a test and do not affect its run."""
 
 DEEPEST = 5
 """The depth to which nested structures are changed or made."""
 
-_SPREAD = 100.0
+_WIDEST = 100.0
 """Unbounded numbers are drawn at most this far from 0, or from their only bound."""
 
 _SEEDS = 1 << 32
@@ -104,7 +104,7 @@ class Mutator:
         self._fields = {
             field.encode_name: field.type
             for field in described.fields
-            if field.name not in (*fixed, *_KEPT)
+            if field.name not in (*fixed, *_DESCRIPTIVE)
             and _can_change(field.type)
             and not described.array_like
         }
@@ -125,10 +125,10 @@ class Mutator:
         """
         for _ in range(ATTEMPTS if self._fields else 0):
             choices: list[Draw] = []
-            value = _built(test, self._type)
+            value = _as_plain(test, self._type)
             for _ in range(rng.choice(CHANGES)):
-                field = self._learned.choose(rng, "field", self._places(value), choices)
-                donor = _built(rng.choice(others), self._type) if others else value
+                field = self._learned.choose(rng, "field", self._weighted_fields(value), choices)
+                donor = _as_plain(rng.choice(others), self._type) if others else value
                 kind = self._fields[field]
                 value[field] = (
                     rng.randrange(_SEEDS)
@@ -144,7 +144,7 @@ class Mutator:
                 return changed
         return None
 
-    def _places(self, value: Mapping[str, Any]) -> list[str]:
+    def _weighted_fields(self, value: Mapping[str, Any]) -> list[str]:
         """The fields that can be changed; a sequence is listed once per element."""
         sizes = {
             name: len(whole) if isinstance(whole := value[name], list | tuple) else 1
@@ -183,26 +183,28 @@ class Mutator:
                 names = [field.encode_name for field in fields]
                 name = self._learned.choose(rng, path, names, drawn)
                 of = next(field.type for field in fields if field.encode_name == name)
-                whole = _filled(value, kind)
-                members = _filled(donor, kind) if isinstance(donor, dict) else whole
+                whole = _with_defaults(value, kind)
+                members = _with_defaults(donor, kind) if isinstance(donor, dict) else whole
                 inner = members.get(name, whole[name])
                 new = self._changed(whole[name], of, inner, f"{path}.{name}", rng, drawn)
                 return {**whole, name: new}
             case inspect.VarTupleType() | inspect.ListType():
                 others = list(donor) if isinstance(donor, list | tuple) else []
-                return self._sequence(list(value), kind.item_type, others, path, rng, drawn)
+                return self._changed_sequence(list(value), kind.item_type, others, path, rng, drawn)
             case inspect.UnionType():
                 member = _member(value, kind)
                 if member is not None and _can_change(member) and rng.random() < 0.5:
                     return self._changed(value, member, donor, path, rng, drawn)
                 options = [one for one in kind.types if _can_make(one)]
-                return self._fresh(rng.choice(options), path, rng, drawn) if options else value
+                return (
+                    self._random_value(rng.choice(options), path, rng, drawn) if options else value
+                )
             case inspect.IntType() | inspect.FloatType() if rng.random() < 0.5:
-                return _near(value, kind, rng)
+                return _number_near(value, kind, rng)
             case _:
-                return self._fresh(kind, path, rng, drawn)
+                return self._random_value(kind, path, rng, drawn)
 
-    def _sequence(
+    def _changed_sequence(
         self,
         values: list[Any],
         kind: inspect.Type,
@@ -218,7 +220,7 @@ class Mutator:
         place = rng.randrange(len(values) + (way in ("insert", "borrow", "tail")))
         match way:
             case "insert":
-                values.insert(place, self._fresh(kind, f"{path}[]", rng, drawn))
+                values.insert(place, self._random_value(kind, f"{path}[]", rng, drawn))
             case "borrow":
                 values.insert(place, rng.choice(donor))
             case "tail":
@@ -232,7 +234,9 @@ class Mutator:
                 values[place] = self._changed(values[place], kind, other, f"{path}[]", rng, drawn)
         return values
 
-    def _fresh(self, kind: inspect.Type, path: str, rng: random.Random, drawn: list[Draw]) -> Any:
+    def _random_value(
+        self, kind: inspect.Type, path: str, rng: random.Random, drawn: list[Draw]
+    ) -> Any:
         match kind:
             case inspect.NoneType():
                 return None
@@ -244,10 +248,10 @@ class Mutator:
                 options = [enum.value for enum in kind.cls]
                 return self._learned.choose(rng, path, options, drawn)
             case inspect.IntType() | inspect.FloatType():
-                return _number(kind, rng)
+                return _random_number(kind, rng)
             case inspect.StructType():
                 values = {
-                    field.encode_name: self._fresh(
+                    field.encode_name: self._random_value(
                         field.type, f"{path}.{field.encode_name}", rng, drawn
                     )
                     for field in kind.fields
@@ -256,10 +260,10 @@ class Mutator:
                 return {kind.tag_field: kind.tag, **values} if kind.tag_field else values
             case inspect.UnionType():
                 options = [one for one in kind.types if _can_make(one)]
-                return self._fresh(rng.choice(options), path, rng, drawn)
+                return self._random_value(rng.choice(options), path, rng, drawn)
             case inspect.VarTupleType() | inspect.ListType():
                 few = range(rng.randint(0, 1))
-                return [self._fresh(kind.item_type, f"{path}[]", rng, drawn) for _ in few]
+                return [self._random_value(kind.item_type, f"{path}[]", rng, drawn) for _ in few]
             case _:
                 return ""
 
@@ -296,12 +300,12 @@ def _can_change(kind: inspect.Type, depth: int = 0) -> bool:
     return not isinstance(kind, inspect.NoneType) and _can_make(kind, depth)
 
 
-def _built(test: Test, kind: inspect.StructType) -> dict[str, Any]:
+def _as_plain(test: Test, kind: inspect.StructType) -> dict[str, Any]:
     """A test as plain data, including fields at their defaults."""
-    return _filled(msgspec.to_builtins(test), kind)
+    return _with_defaults(msgspec.to_builtins(test), kind)
 
 
-def _filled(value: Mapping[str, Any], kind: inspect.StructType) -> dict[str, Any]:
+def _with_defaults(value: Mapping[str, Any], kind: inspect.StructType) -> dict[str, Any]:
     """A structure as plain data, with the defaults of fields that were left out."""
     whole = dict(value)
     for field in kind.fields:
@@ -331,10 +335,10 @@ def _bounds(kind: inspect.IntType | inspect.FloatType) -> tuple[float | None, fl
     return low, high
 
 
-def _number(kind: inspect.IntType | inspect.FloatType, rng: random.Random) -> float:
+def _random_number(kind: inspect.IntType | inspect.FloatType, rng: random.Random) -> float:
     """A random number within the bounds of its type; small ones are as likely as large ones."""
     low, high = _bounds(kind)
-    spread: float = _SPREAD ** rng.random()
+    spread: float = _WIDEST ** rng.random()
     if low is None and high is None:
         number = rng.uniform(-1, 1) * spread
     elif high is None or low is None:
@@ -346,7 +350,9 @@ def _number(kind: inspect.IntType | inspect.FloatType, rng: random.Random) -> fl
     return round(number) if isinstance(kind, inspect.IntType) else number
 
 
-def _near(value: float, kind: inspect.IntType | inspect.FloatType, rng: random.Random) -> float:
+def _number_near(
+    value: float, kind: inspect.IntType | inspect.FloatType, rng: random.Random
+) -> float:
     """A random number near another one, within the bounds of its type."""
     low, high = _bounds(kind)
     number = value + rng.gauss(0, 1) * rng.choice((0.01, 0.1, 0.5)) * (abs(value) or 1.0)

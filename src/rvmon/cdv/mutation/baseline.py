@@ -62,8 +62,8 @@ def difference(test: str, was: Recorded, now: Recorded) -> Difference | None:
     places = [
         place
         for place in (
-            _of_samples(was.samples, now.samples),
-            _of_samples(_states(was), _states(now)),
+            _first_difference(was.samples, now.samples),
+            _first_difference(_states(was), _states(now)),
             None if was.run.end_ns == now.run.end_ns else (now.run.end_ns, "", "", ""),
         )
         if place is not None
@@ -77,21 +77,23 @@ def _states(recorded: Recorded) -> Sequence[tuple[int, Values]]:
     return [(t_ns, {"state": state}) for t_ns, state in recorded.run.states]
 
 
-_OVER: tuple[int, Values] = (2**63, {})
+_AFTER_END: tuple[int, Values] = (2**63, {})
 """Stands for a sample after the last one, later than all others."""
 
 
-def _of_samples(
+def _first_difference(
     was: Sequence[tuple[int, Values]], now: Sequence[tuple[int, Values]]
 ) -> tuple[int, str, str, str] | None:
-    for (t_was, before), (t_now, after) in zip_longest(was, now, fillvalue=_OVER):
+    for (t_was, before), (t_now, after) in zip_longest(was, now, fillvalue=_AFTER_END):
         t_ns = min(t_was, t_now)
-        if place := _first(t_ns, before if t_was == t_ns else {}, after if t_now == t_ns else {}):
+        if place := _first_value(
+            t_ns, before if t_was == t_ns else {}, after if t_now == t_ns else {}
+        ):
             return place
     return None
 
 
-def _first(t_ns: int, was: Values, now: Values) -> tuple[int, str, str, str] | None:
+def _first_value(t_ns: int, was: Values, now: Values) -> tuple[int, str, str, str] | None:
     for name in {**was, **now}:
         before, after = _as_text(was, name), _as_text(now, name)
         if before != after:

@@ -166,11 +166,11 @@ def play_mutants(
     with closing(
         parallel.execute(
             (task for task in tasks if task[1]),
-            partial(_begin, suite, sources, every, keep),
+            partial(_start_worker, suite, sources, every, keep),
             jobs=jobs,
             what="mutant",
-            instead=_ended,
-            timeout_s=_most_s(suite),
+            instead=_outcome_of_ended,
+            timeout_s=_wall_limit_s(suite),
             fresh=True,
         )
     ) as results:
@@ -190,14 +190,16 @@ def _load_what_runs_need(suite: Suite) -> None:
     Bench(suite.name, suite.robot).play(suite.tests[quickest])
 
 
-def _begin(
+def _start_worker(
     suite: Suite, sources: dict[str, str], every: bool, keep: bool
 ) -> Callable[[_Task], Tried]:
-    _limit()
-    return partial(_tried, suite, sources, every, keep)
+    _limit_process()
+    return partial(_try_mutant, suite, sources, every, keep)
 
 
-def _tried(suite: Suite, sources: dict[str, str], every: bool, keep: bool, task: _Task) -> Tried:
+def _try_mutant(
+    suite: Suite, sources: dict[str, str], every: bool, keep: bool, task: _Task
+) -> Tried:
     mutant, reaching = task
     try:
         plant(mutant, sources[str(mutant.path)])
@@ -211,7 +213,7 @@ def _tried(suite: Suite, sources: dict[str, str], every: bool, keep: bool, task:
         played += 1
         was = suite.recorded[name]
         try:
-            with _at_most(_most_cpu_s(was)):
+            with _cpu_limit(_cpu_limit_s(was)):
                 now = play(suite.tests[name])
         except _Overtime:
             findings.append(Finding(name, How.HUNG, (HANGS,)))
@@ -248,11 +250,11 @@ def _finding(suite: Suite, name: str, was: Recorded, now: Recorded) -> Finding |
     return Finding(name, How.ANSWER, wrong) if wrong else None
 
 
-def _most_cpu_s(was: Recorded) -> float:
+def _cpu_limit_s(was: Recorded) -> float:
     return LEAST_CPU_S + TIMES_CPU * was.cpu_s
 
 
-def _most_s(suite: Suite) -> float:
+def _wall_limit_s(suite: Suite) -> float:
     """The wall time after which a mutant is killed.
 
     Hanging tests are detected by their processor time; this limit is for those that wait for ever.
@@ -262,10 +264,10 @@ def _most_s(suite: Suite) -> float:
     recorded = suite.recorded.values()
     computed = max(sum(one.cpu_s for one in recorded), LEAST_CPU_S)
     waited = sum(one.seconds for one in recorded) / computed
-    return PATIENCE_S + max(waited, 1.0) * sum(map(_most_cpu_s, recorded))
+    return PATIENCE_S + max(waited, 1.0) * sum(map(_cpu_limit_s, recorded))
 
 
-def _ended(task: _Task, ended: Ended) -> Tried:
+def _outcome_of_ended(task: _Task, ended: Ended) -> Tried:
     how = How.HUNG if ended.timed_out else How.LOST
     mutant, reaching = task
     return Tried(mutant, len(reaching), 0, (Finding("", how, (ended.why,)),))
@@ -276,7 +278,7 @@ class _Overtime(BaseException):
 
 
 @contextmanager
-def _at_most(cpu_s: float) -> Iterator[None]:
+def _cpu_limit(cpu_s: float) -> Iterator[None]:
     """Raise `_Overtime` after some processor time, which does not depend on the machine's load."""
     if not hasattr(signal, "setitimer"):
         yield
@@ -293,7 +295,7 @@ def _at_most(cpu_s: float) -> Iterator[None]:
         signal.setitimer(signal.ITIMER_PROF, 0)
 
 
-def _limit() -> None:
+def _limit_process() -> None:
     """Limit the memory of this process, and discard its output."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     for stream in (sys.__stdout__, sys.__stderr__):

@@ -108,7 +108,7 @@ def mutants(
     for name, body in _scopes(tree, "", constants):
         scope = Scope(body, strings)
         is_constant = name in constants
-        for node in (node for statement in body for node in _executed(statement)):
+        for node in (node for statement in body for node in _mutable_nodes(statement)):
             if not isinstance(node, ast.expr if is_constant else ast.expr | ast.stmt):
                 continue
             if is_constant or node.lineno in lines:
@@ -135,7 +135,7 @@ def _scopes(
                 yield from _scopes(node, prefix, ())
 
 
-def _executed(node: ast.AST) -> Iterator[ast.AST]:
+def _mutable_nodes(node: ast.AST) -> Iterator[ast.AST]:
     """The node and all below it whose change could matter, except nested functions.
 
     Those are scopes of their own. Annotations do not matter, nor does `strict` of `zip`.
@@ -148,7 +148,7 @@ def _executed(node: ast.AST) -> Iterator[ast.AST]:
             if isinstance(child, ast.AST) and not isinstance(
                 child, ast.FunctionDef | ast.AsyncFunctionDef
             ):
-                yield from _executed(child)
+                yield from _mutable_nodes(child)
 
 
 def _changes(
@@ -193,24 +193,24 @@ def code_mutants(code: Code) -> list[Mutant]:
     for block in code.blocks:
         lines.setdefault(block.path, set()).update(block.lines)
     for path, measured in lines.items():
-        known = {_meaning(compile(text_of_file(path), path, "exec"))}
+        known = {_bytecode(compile(text_of_file(path), path, "exec"))}
         changes = mutants(Path(path), measured, constants=code.constants.get(path, ()))
         for mutant in sorted(changes, key=lambda mutant: mutant.line):
-            meaning = _meaning_of(mutant)
+            meaning = _bytecode_of(mutant)
             if meaning is not None and meaning not in known:
                 known.add(meaning)
                 kept.append(mutant)
     return kept
 
 
-def _meaning_of(mutant: Mutant) -> tuple[object, ...] | None:
+def _bytecode_of(mutant: Mutant) -> tuple[object, ...] | None:
     try:
-        return _meaning(compile(mutant.source, str(mutant.path), "exec"))
+        return _bytecode(compile(mutant.source, str(mutant.path), "exec"))
     except (SyntaxError, ValueError):
         return None
 
 
-def _meaning(code: CodeType) -> tuple[object, ...]:
+def _bytecode(code: CodeType) -> tuple[object, ...]:
     """What determines the behaviour of a code object, without its line numbers."""
     return code.co_name, code.co_code, code.co_names, code.co_varnames, tuple(_constants(code))
 
@@ -218,6 +218,6 @@ def _meaning(code: CodeType) -> tuple[object, ...]:
 def _constants(code: CodeType) -> Iterator[object]:
     for const in code.co_consts:
         if isinstance(const, CodeType):
-            yield _meaning(const)
+            yield _bytecode(const)
         else:
             yield type(const).__name__, repr(const)

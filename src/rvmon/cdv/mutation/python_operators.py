@@ -31,7 +31,7 @@ class Strings:
         self._uses: dict[int, str] = {}
         self._of_use: dict[str, list[str]] = {}
         for node in ast.walk(tree):
-            for use, element in _used(node):
+            for use, element in _strings_used(node):
                 self._uses[id(element)] = use
                 known = self._of_use.setdefault(use, [])
                 if str(element.value) not in known:
@@ -46,7 +46,7 @@ class Strings:
         return known[place + 1 :] + known[:place]
 
 
-def _used(node: ast.AST) -> Iterator[tuple[str, ast.Constant]]:
+def _strings_used(node: ast.AST) -> Iterator[tuple[str, ast.Constant]]:
     """The strings that are direct parts of a node, each with its use."""
     match node:
         case ast.Call(func=function, args=arguments):
@@ -81,7 +81,7 @@ class Scope:
     @cached_property
     def _nodes(self) -> list[ast.AST]:
         """All nodes of the scope."""
-        return [node for statement in self._body for node in _below(statement)]
+        return [node for statement in self._body for node in _own_nodes(statement)]
 
     def alternatives(self, node: ast.Constant) -> list[str]:
         """Replacements of a string: the next one of the same use, or two if it is returned."""
@@ -107,7 +107,7 @@ class Scope:
 
     def holds_all_waits(self, node: ast.AST) -> bool:
         """Whether a node holds every `yield`: without it the function would not be a generator."""
-        return bool(self._waits) and self._waits <= {id(one) for one in _below(node)}
+        return bool(self._waits) and self._waits <= {id(one) for one in _own_nodes(node)}
 
     @cached_property
     def _waits(self) -> set[int]:
@@ -124,12 +124,12 @@ class Scope:
         return list(dict.fromkeys(values)) or ([""] if not any(returns) else [])
 
 
-def _below(node: ast.AST) -> Iterator[ast.AST]:
+def _own_nodes(node: ast.AST) -> Iterator[ast.AST]:
     """A node and all below it, without nested functions and classes."""
     yield node
     for child in ast.iter_child_nodes(node):
         if not isinstance(child, _DEFINED):
-            yield from _below(child)
+            yield from _own_nodes(child)
 
 
 Change = tuple[str, "ast.expr | ast.stmt", str]
