@@ -51,8 +51,10 @@ def with_mutants(
     drawn = _sample(mutated_code(campaign), mutants)
     steps = len(closed.choices) + 3
 
-    def killers(names: Sequence[str], mutants_played: Sequence[Mutant], step: int) -> Killers:
-        found = _killers(_subset(suite, names), mutants_played, jobs)
+    def killers(
+        names: Sequence[str], mutants_played: Sequence[Mutant], step: int, *, every: bool = False
+    ) -> Killers:
+        found = _killers(_subset(suite, names), mutants_played, jobs, every=every)
         progress(step / steps)
         return found
 
@@ -65,17 +67,13 @@ def with_mutants(
     missed = [mutant for mutant in drawn if mutant.identity not in kills]
     others = [name for name in suite.tests if name not in kept]
     by_others = killers(others, missed, steps - 2)
-    added = _fewest_tests(
-        killers(
-            list(dict.fromkeys(name for names in by_others.values() for name in names)),
-            [
-                mutant
-                for mutant in missed
-                if mutant.identity in by_others and mutant.third != HELD_OUT
-            ],
-            steps - 1,
-        )
-    )
+    choosing = [
+        mutant for mutant in missed if mutant.identity in by_others and mutant.third != HELD_OUT
+    ]
+    # So far, playing a mutant stopped at its first killer. To find the fewest tests, all killers
+    # among the candidates must be known.
+    candidates = dict.fromkeys(name for one in choosing for name in by_others[one.identity])
+    added = _fewest_tests(killers([*candidates], choosing, steps - 1, every=True))
     by_added = killers(added, missed, steps)
     choices.append(_choice(None, len(kept) + len(added), {**kills, **by_added}, drawn))
     everything = {**kills, **by_others}
@@ -106,10 +104,10 @@ def _subset(suite: Suite, names: Sequence[str]) -> Suite:
     return replace(suite, tests=tests, recorded={name: suite.recorded[name] for name in tests})
 
 
-def _killers(suite: Suite, mutants: Sequence[Mutant], jobs: int) -> Killers:
+def _killers(suite: Suite, mutants: Sequence[Mutant], jobs: int, *, every: bool) -> Killers:
     if not suite.tests or not mutants:
         return {}
-    tried = play_mutants(suite, mutants, jobs=jobs)
+    tried = play_mutants(suite, mutants, jobs=jobs, every=every)
     return {
         trial.mutant.identity: frozenset(finding.test for finding in trial.findings if finding.test)
         for trial in tried

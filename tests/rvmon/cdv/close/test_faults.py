@@ -19,6 +19,9 @@ CODE = """def limited(wanted):
         level = 8
     return level - 1
 """
+NESTED = """def limited(wanted):
+    return max(min(wanted, 7), min(wanted, 14) - 8)
+"""
 SPEC = """signal level : int
 requirement L1 "It goes no further"
   always (0 <= level and level <= 7)
@@ -50,19 +53,23 @@ def asked(count, seed):
     return [Wanted(name="asked", strategy="asked", seed=1)]
 
 
-@pytest.fixture
-def limited(tmp_path):
+def campaign_of(path, code):
     """A campaign against code that limits a level; what it covers says nothing of the limit."""
-    (tmp_path / "limited_machine.py").write_text(CODE)
-    (tmp_path / "limited.rv").write_text(SPEC)
-    path = tmp_path / "limited_machine.py"
+    path.write_text(code)
+    spec = path.with_name("limited.rv")
+    spec.write_text(SPEC)
     return cdv.Campaign(
         name="limited",
         test=Wanted,
         strategies={"asked": asked},
-        robots={"machine": cdv.Robot(lambda: Machine(path), tmp_path / "limited.rv")},
+        robots={"machine": cdv.Robot(lambda: Machine(path), spec)},
         code=cdv.Code(cdv.blocks_of(path), branches=False),
     )
+
+
+@pytest.fixture
+def limited(tmp_path):
+    return campaign_of(tmp_path / "limited_machine.py", CODE)
 
 
 @pytest.mark.slow
@@ -80,6 +87,17 @@ def test_what_the_suite_lets_live_is_killed_by_tests_that_are_added(limited):
     assert {one.job.test.name for one in closed.suite} < {one.job.test.name for one in found.suite}
     assert suite.tests - two.tests == len(found.suite) - len(closed.suite)
     assert b'"trade"' in to_json(closed_document(found))
+
+
+@pytest.mark.slow
+def test_no_more_tests_are_added_than_needed(tmp_path):
+    """The limits are missed from 8 and from 16 on: a test of 16 is enough, whatever came first."""
+    campaign = campaign_of(tmp_path / "capped.py", NESTED)
+    closed = close(campaign, "machine", jobs=1, budget=Budget(tests=40))
+    found = with_mutants(campaign, "machine", closed, 100, jobs=1)
+    _, two, suite, everything = found.trade.choices
+    assert suite.tests - two.tests == 1
+    assert two.killed + 3 == suite.killed == everything.killed
 
 
 @pytest.mark.slow
