@@ -47,9 +47,9 @@ Row = tuple[str | Markup, ...]
 _SECTION = Markup(
     "<section><h2>The model</h2>{}<p class=soft>Random runs choose among edges by the weights of "
     "the model, {:,} of {:g} s for each, with the 95 % interval.</p><h3>The model and the code</h3>"
-    "<p class=soft>Tests follow runs of the model that take all edges there are, and the correct "
-    "robot plays them; runs of it are compared with the model, of each strategy the first {}; when "
-    "the human is ready is an input.</p>{}</section>"
+    "<p class=soft>Tests follow runs of the model that together take all edges which any run can "
+    "take, and the correct robot plays them. The first {} runs of each strategy are compared with "
+    "the model, for which the instant of the human's readiness is an input.</p>{}</section>"
 )
 _WITNESS = Markup('{}<a href="{}" title="the robot plays it"> (witness)</a>')
 
@@ -83,10 +83,10 @@ def model_sections(
     found = parallel.execute(chosen, _conformer, jobs=jobs, what="run")
     for own in strategies.values():
         code.append(_strategy_row([(test, next(found)) for test in own], addresses))
-    titles = ("", "some run shows it", "random runs that do", "all runs keep to it", "that is")
+    titles = ("", "some run shows it", "random runs that do", "all runs keep to it", "in words")
     tables = [
         component("named_rows", head, rows)
-        for head, rows in ((titles, claimed), (("", "there are", "so it is", "the others"), code))
+        for head, rows in ((titles, claimed), (("", "in all", "as expected", "the others"), code))
     ]
     return [_SECTION.format(tables[0], SIMULATED, SIMULATED_UNITS * 0.05, count, tables[1])]
 
