@@ -118,7 +118,7 @@ class JsonObjects:
         """
         self.unread += 1
         self._is_any_lost = self._is_any_lost or robot is None
-        _log.warning("%s is not taken: %s", where, why)
+        _log.warning("%s is rejected: %s", where, why)
         for one in self._last if robot is None else [robot]:
             if self._last.get(one) is None:  # its objects have no stamps: the loss was just now
                 self.driver.lose(robot=one, is_over=True, why=_UNREADABLE)

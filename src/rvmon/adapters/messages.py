@@ -128,7 +128,7 @@ class MessageFeed:
             before: whether the outage starts at the last message that was read.
             for_good: whether it lasts until `find` is called.
         """
-        _log.warning("a message of %s is not taken: %s", topic, why)
+        _log.warning("a message of %s is rejected: %s", topic, why)
         since = self._heard.get(topic, self._began) + 1
         self._driver.lose(
             self._names_of(topic),
@@ -136,7 +136,7 @@ class MessageFeed:
             # A message with its own stamp may be older than its arrival.
             since_ns=since if before or topic in self._stamped else None,
             is_over=not for_good,
-            why=f"{topic} cannot be read" if for_good else f"a message of {topic} was not taken",
+            why=f"{topic} cannot be read" if for_good else f"a message of {topic} was rejected",
         )
 
     def find(self, topic: str) -> None:

@@ -72,7 +72,8 @@ def run_clip(arguments: argparse.Namespace) -> int:
         when = ""
         if same.decided is not None:
             when = f", decided at {format_stamped(same.decided, attempt.origin)}"
-        say(f"{attempt.name} is {same.name} in it: {same.verdict}{when}, as in {data}")
+        made = Path(out or case or place).name
+        say(f"{attempt.name} is {same.name} in {made}: {same.verdict}{when}, as in {data}")
         if case is not None:
             _write_case(arguments, case, place, same)
     return 0

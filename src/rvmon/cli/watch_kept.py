@@ -174,12 +174,12 @@ def _feed(monitor: DurableMonitor, spec: Spec, lines: Iterable[bytes]) -> None:
         try:
             t, values = read_object(decoded_object(line), spec.schema, ignored)
         except TraceError as error:
-            warn(f"line {number} is not taken: {error}")
+            warn(f"line {number} is rejected: {error}")
             monitor.miss()
             continue
         try:
             monitor.step_ns(t, values)
         except TraceError as error:
-            warn(f"line {number} is not taken: {error}")
+            warn(f"line {number} is rejected: {error}")
     for name in ignored:
         warn(f"ignored: {name} is not declared in the spec")

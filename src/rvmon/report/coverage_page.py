@@ -154,7 +154,7 @@ def _headline(summary: Summary) -> str:
     if summary.illegal:
         parts.append(f"{counted(len(summary.illegal), 'illegal item')} hit")
     if summary.not_fine:
-        parts.append(f"{len(summary.not_fine):,} of {counted(tests, 'test')} not fine")
+        parts.append(f"{len(summary.not_fine):,} of {counted(tests, 'test')} with problems")
     if summary.holes:
         parts.append(counted(len(summary.holes), "hole"))
     return ", ".join(parts)

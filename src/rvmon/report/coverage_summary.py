@@ -132,9 +132,11 @@ class Summary(Answers):
     def ranking_text(self) -> str:
         """The size of `fewest` in words, with its lower bound."""
         count, least = len(self.ranking), self.fewest.at_least
-        text = f"{count:,} of {counted(len(self.coverage.entries), 'test')} cover the same"
+        suffice = "suffices" if count == 1 else "suffice"
+        tests = counted(len(self.coverage.entries), "test")
+        text = f"{count:,} of {tests} {suffice} for the same coverage"
         if least >= count:
-            return f"{text}, no fewer do"
+            return f"{text}, the minimum"
         return f"{text}, at least {least:,} are needed" if least else text
 
     @cached_property

@@ -39,7 +39,7 @@ def print_overview(summary: Summary, printer: Printer) -> None:
         + first_of([summary.record(place).name for place in places], _FEW)
         for fault, places in summary.faults.items()
     ]
-    _print_list(printer, "not fine:", faults, style="bold red")
+    _print_list(printer, "problems:", faults, style="bold red")
     if summary.comparison is not None:
         _print_comparison(summary, summary.comparison, printer)
 

@@ -81,7 +81,7 @@ def print_reports(
 def print_report(report: Report, spec: CheckedSpec, printer: Printer) -> None:
     """Print the verdicts on one recording."""
     end = "" if report.end is None else f"  to {format_stamped(report.end, report.origin)}"
-    printer.line((report.trace or spec.name, "bold"), f"{end}  by {spec.name}")
+    printer.line((report.trace or spec.name, "bold"), f"{end}  against {spec.name}")
     if spec.requirements:
         _print_verdicts(report, spec, printer)
     for name, verdict in report.verdicts.items():

@@ -55,7 +55,7 @@ def test_rows_are_copied_as_they_stand_and_values_are_carried(base, capsys):
     assert capsys.readouterr().out.splitlines() == [
         "b.csv: 3 entries of a.csv, 15 s to 17 s",
         "carried to its start: `speed`, `ready`",
-        "R1#1 is R1#1 in it: F, decided at 16.000000001 s, as in a.csv",
+        "R1#1 is R1#1 in b.csv: F, decided at 16.000000001 s, as in a.csv",
     ]
 
 
@@ -76,7 +76,7 @@ def test_an_episode_is_cut_around_what_failed(base, capsys):
     """It may have begun hours before; in the piece it begins with it."""
     assert clip("R2", "--before", "0", "--after", "0", "-o", "b.csv") == 0
     assert (base / "b.csv").read_text().splitlines() == [ROWS[0], ROWS[6]]
-    assert "R2#1 is R2#1 in it: F, decided at 17 s" in capsys.readouterr().out
+    assert "R2#1 is R2#1 in b.csv: F, decided at 17 s" in capsys.readouterr().out
 
 
 def test_what_a_past_operator_remembers_needs_more_before(base, capsys):

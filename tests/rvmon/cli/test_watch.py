@@ -50,7 +50,7 @@ def test_what_a_program_greets_with_does_not_choose_the_clock(door, says, before
     (door / "a.jsonl").write_text(f"{before}\n{FAILS}nonsense\n")
     told = says(1, "watch", "door.rv", "a.jsonl")
     assert told.out.startswith("2.000000001 s  D1#1 F ✗")
-    assert f"line {4 + before.count(chr(10))} is not taken" in told.err
+    assert f"line {4 + before.count(chr(10))} is rejected" in told.err
 
 
 @pytest.mark.usefixtures("door")
@@ -64,7 +64,7 @@ def test_what_a_program_greets_with_does_not_choose_the_clock(door, says, before
 def test_a_time_or_a_robot_that_is_named_is_in_each_line(says, words, why, end):
     """One without it is lost: neither stamped by the clock of the machine, nor of nobody."""
     told = says(1, "watch", "door.rv", "a.jsonl", *words.split())
-    assert f"line 1 is not taken: {why}" in told.err
+    assert f"line 1 is rejected: {why}" in told.err
     assert end in told.out
 
 
@@ -180,7 +180,7 @@ def test_what_passes_can_be_left_out(door, capsys):
 def test_of_many_complaints_of_a_kind_few_are_told(door, capsys):
     (door / "a.jsonl").write_text(FAILS + "nonsense\n" * 123)
     assert main(["watch", "door.rv", "a.jsonl", "--format", "text"]) == 1
-    told = [line for line in capsys.readouterr().err.splitlines() if "not taken" in line]
+    told = [line for line in capsys.readouterr().err.splitlines() if "rejected" in line]
     assert [line.split()[1] for line in told] == ["3", "4", "5", "6", "7", "12", "102"]
     assert "the 100th of this kind" in told[-1]
 

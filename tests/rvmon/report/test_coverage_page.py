@@ -30,14 +30,14 @@ def page_of(database, earlier=None):
 def test_what_is_wrong_stands_first(door):
     read = Reader(page_of(door))
     parts = [
-        "46 % covered, 1 illegal item hit, 2 of 4 tests not fine, 6 holes",
+        "46 % covered, 1 illegal item hit, 2 of 4 tests with problems, 6 holes",
         "situation: no × touch 1 hit by 1 test, first wild-1 at 7 s",
         "crashed: ZeroDivisionError: the gap is 0: 1 test wild-2",
         "total 46 %",
         "Holes 6",
         "near: far never hit : the arm is 1 m long: far begins at 1 m",
         "Verdicts random 2 directed 2 P F NT I P F NT I D1 2 0 0 0 0 1 0 0",
-        "3 of 4 tests cover the same, no fewer do: calm-2 wild-2 wild-1",
+        "3 of 4 tests suffice for the same coverage, the minimum: calm-2 wild-2 wild-1",
         "Number of tests: P passed F failed NT not triggered I inconclusive",
     ]
     places = [read.text.find(part) for part in parts]
