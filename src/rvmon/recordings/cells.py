@@ -54,17 +54,17 @@ def batch_of(
     events = {}
     for name, fields in payloads.items():
         says = occurrences(own.get(name), fields.values(), len(times))
-        heard = {field: _where(cells, says != NO) for field, cells in fields.items()}
-        events[name] = Occurrences(says, heard)
+        given = {field: _only_where(cells, says != NO) for field, cells in fields.items()}
+        events[name] = Occurrences(says, given)
     return Batch(times, signals, events, first, lines)
 
 
-def _where(cells: Cells, heard: NDArray[np.bool_]) -> Cells:
-    """The cells with "no update" in the rows where `heard` is false."""
-    if heard.all():
+def _only_where(cells: Cells, rows: NDArray[np.bool_]) -> Cells:
+    """The cells with "no update" in the rows where the mask is false."""
+    if rows.all():
         return cells
     says = np.uint8(YES) if cells.says is None else cells.says
-    return replace(cells, says=np.where(heard, says, np.uint8(NO_UPDATE)))
+    return replace(cells, says=np.where(rows, says, np.uint8(NO_UPDATE)))
 
 
 def occurrences(own: Cells | None, fields: Iterable[Cells], count: int) -> NDArray[np.uint8]:

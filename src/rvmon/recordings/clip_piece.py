@@ -59,8 +59,8 @@ class Piece(Struct, frozen=True):
         held = self.holds(instants)
         if not self.ordered:
             return held, False
-        is_behind = np.maximum.accumulate(instants > self.stop)
-        return held & ~is_behind, bool(is_behind[-1])
+        is_after = np.maximum.accumulate(instants > self.stop)
+        return held & ~is_after, bool(is_after[-1])
 
     @property
     def without_names(self) -> Schema:

@@ -136,8 +136,8 @@ def _dialect_at(lines: Sequence[str], first: int, separator: str) -> Dialect | N
     if not separator and any(other in lines[first] for other in _SEPARATORS if other):
         return None  # the blanks are inside cells
     header = _cells(lines[first], separator)
-    behind = [line for line in lines[first + 1 :] if line.strip() and not _COMMENT.match(line)]
-    rows = [_cells(line, separator) for line in behind[:_SOME]]
+    following = [line for line in lines[first + 1 :] if line.strip() and not _COMMENT.match(line)]
+    rows = [_cells(line, separator) for line in following[:_SOME]]
     # Half of the rows suffices: ragged rows are reported when they are read.
     alike = sum(len(row) == len(header) for row in rows)
     if len(header) < 2 or 2 * alike < len(rows):

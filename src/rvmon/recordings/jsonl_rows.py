@@ -33,8 +33,8 @@ _HALF_PAIR = re.compile(r"\\u[dD][89abAB]..(?!\\u[dD][c-fC-F])")
 """The first half of an escaped surrogate pair without the second."""
 
 
-_APART = re.compile(r'"\s+:')
-_APART_IN_BYTES = re.compile(rb'"\s+:')  # a quote that may end a name, and blanks before the colon
+_SPACED = re.compile(r'"\s+:')
+_SPACED_IN_BYTES = re.compile(rb'"\s+:')  # a quote that may end a name, and blanks before the colon
 
 
 def jsonl_samples(
@@ -117,9 +117,9 @@ def names_in(text: str | bytes) -> int:
     """
     if isinstance(text, str):
         named, colons = text.count('":'), text.count(":")
-        return -1 if colons != named and _APART.search(text) else named
+        return -1 if colons != named and _SPACED.search(text) else named
     named, colons = text.count(b'":'), text.count(b":")
-    return -1 if colons != named and _APART_IN_BYTES.search(text) else named
+    return -1 if colons != named and _SPACED_IN_BYTES.search(text) else named
 
 
 def count_of_names(value: object) -> int:

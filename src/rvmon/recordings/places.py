@@ -97,8 +97,8 @@ def named_errors(path: str | Path) -> Iterator[None]:
         raise TraceError(cannot_read(path, error)) from None
     except TraceError as error:
         message = str(error)
-        beginnings = tuple(filter(None, str(path).split(JOINT)))
-        placed = message if message.startswith(beginnings) else f"{path}: {message}"
+        starts = tuple(filter(None, str(path).split(JOINT)))
+        placed = message if message.startswith(starts) else f"{path}: {message}"
         raise type(error)(placed) from None
     except OSError as error:
         raise TraceError(cannot_read(path, error)) from None
@@ -283,9 +283,9 @@ def found_recordings(paths: Iterable[str]) -> Iterator[str]:
     for path in paths:
         if is_address(path):
             # Signed addresses have question marks.
-            yield from _some(matching_addresses(path), path) if "*" in path else [path]
+            yield from _at_least_one(matching_addresses(path), path) if "*" in path else [path]
         elif os.path.isdir(path) and not form_of_folder(path):
-            yield from _some(sorted(_recordings_at(path)), path)
+            yield from _at_least_one(sorted(_recordings_at(path)), path)
         elif _MAGIC.isdisjoint(path) or os.path.lexists(path):
             yield path
         else:
@@ -293,7 +293,7 @@ def found_recordings(paths: Iterable[str]) -> Iterator[str]:
 
             # The set removes duplicates: `**` matches a folder and everything in it.
             found = {one for match in iglob(path, recursive=True) for one in _recordings_at(match)}
-            yield from _some(sorted(found), path)
+            yield from _at_least_one(sorted(found), path)
 
 
 def files_of(path: str) -> list[str]:
@@ -319,7 +319,7 @@ def one_recording(path: str) -> str:
     return found[0]
 
 
-def _some(found: list[str], path: str) -> list[str]:
+def _at_least_one(found: list[str], path: str) -> list[str]:
     if not found:
         raise TraceError(f"{path}: there is no recording: one ends in {', '.join(FORMATS)}")
     return found

@@ -89,7 +89,7 @@ class FileRecording:
         self.end: int | None = None
         self._messages: MessageFile | None = None
         self._joined: Joined | None = None
-        self._begun: tuple[CsvText[Found], Layout] | None = None
+        self._first_text: tuple[CsvText[Found], Layout] | None = None
         self._text: CsvText[Found] | None = None
         if self._format == "csv":
             with (
@@ -99,7 +99,7 @@ class FileRecording:
                 text: CsvText[Found] = CsvText(plain)
                 layout = self._layout(text)
             self._take_names(layout)
-            self._begun = (text, layout) if text.is_whole else None
+            self._first_text = (text, layout) if text.is_whole else None
         elif self._format == "parquet":
             from rvmon.recordings.parquet import parquet_layout
 
@@ -149,9 +149,9 @@ class FileRecording:
         Raises:
             TraceError: with file and line; also if there is no sample.
         """
-        return self._some(self.samples())
+        return self._with_a_sample(self.samples())
 
-    def _some(self, read: Iterator[_Piece]) -> Iterator[_Piece]:
+    def _with_a_sample(self, read: Iterator[_Piece]) -> Iterator[_Piece]:
         with places.named_errors(self.path):
             yield from read
             if not self.rows.count:
@@ -178,7 +178,7 @@ class FileRecording:
         Raises:
             TraceError: with file and line; also if there is no sample.
         """
-        return self._some(self.parts())
+        return self._with_a_sample(self.parts())
 
     def parts(self) -> Iterator[Batch | Sample]:
         """Yield pieces as `pieces` does; there may be none, and errors do not name the file."""
@@ -221,9 +221,9 @@ class FileRecording:
 
             yield from parquet_batches_of(places.local_path(self.path), self._schema)
             return
-        if self._begun is not None:
-            begun, self._begun = self._begun, None
-            yield from self._csv_batches(*begun)
+        if self._first_text is not None:
+            first_text, self._first_text = self._first_text, None
+            yield from self._csv_batches(*first_text)
             return
         with self._opened() as (plain, raw):
             self._open_file = raw if self.can_be_read_again else None

@@ -81,7 +81,7 @@ class Rows:
         self._schema = schema
         self._unit = unit
         self.ordered = ordered
-        self._begin()
+        self._reset()
 
     def samples(self, rows: Iterable[Row]) -> Iterator[Sample]:
         """Yield the samples of a source that is read from its start.
@@ -104,7 +104,7 @@ class Rows:
         """
         from rvmon.recordings.batch import Batch, note_batch, without_ignored
 
-        self._begin()
+        self._reset()
         held: Sample | None = None
         first = last = 0  # the numbers of the rows that `held` was made of
         for piece in pieces:
@@ -125,7 +125,7 @@ class Rows:
                     last = batch.number_of(start - 1)
                 if start < stop:
                     if held is not None:
-                        yield self._noted(held, first, last)
+                        yield self._take_note(held, first, last)
                         held = None
                     middle = batch.cut(start, stop) if stop - start < count else batch
                     note_batch(middle, rise, self.alternations, self._conflicts)
@@ -139,31 +139,31 @@ class Rows:
                 elif sample.t == held.t:
                     held = self._merged(held, sample)
                 else:
-                    yield self._noted(held, first, last)
+                    yield self._take_note(held, first, last)
                     held, first = sample, self._number
                 last = self._number
         if held is not None:
-            yield self._noted(held, first, last)
+            yield self._take_note(held, first, last)
 
-    def _begin(self) -> None:
+    def _reset(self) -> None:
         self._conflicts, self.alternations = Conflicts(), Alternations()
         # the number of rows read; the most by which one was late, ticks (0 if rows are not sorted)
         self.count = self.lateness = 0
         self.first: list[int] = []  # the instants of the first rows, ticks
         self._last: int | None = None
         self._number = 0
-        self._given = 0, 0
+        self._latest_rows = 0, 0
         self._leaps: list[tuple[int, int]] = []
 
-    def _noted(self, sample: Sample, first: int, last: int) -> Sample:
+    def _take_note(self, sample: Sample, first: int, last: int) -> Sample:
         self.alternations.note(sample.values)
-        self._given = first, last
+        self._latest_rows = first, last
         return sample
 
     @property
     def place(self) -> str:
         """The rows that made up the latest sample, for a message."""
-        return self.place_of(*self._given)
+        return self.place_of(*self._latest_rows)
 
     def place_of(self, first: int, last: int) -> str:
         """The rows with these numbers, for a message.

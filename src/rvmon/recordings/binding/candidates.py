@@ -27,7 +27,7 @@ from rvmon.recordings.binding.vocabulary import (
 from rvmon.recordings.messages import Topic
 from rvmon.recordings.messages.field_meanings import UNKNOWN, Meaning, Sort, is_listed, meaning_of
 from rvmon.recordings.messages.fields import Get, arrays_with_names, getter
-from rvmon.recordings.messages.file import MOST, Looked, MessageFile
+from rvmon.recordings.messages.file import MOST, MessageFile, TopicNames
 from rvmon.recordings.values import plain
 from rvmon.texts import shorten
 from rvmon.trace.schema import TURNS, Kind
@@ -108,7 +108,7 @@ class Candidate(Struct, frozen=True):
         return dimensions_of(self.own) or dimensions_of(words_of(self.topic.name))
 
 
-def candidates_of(topic: Topic, named: Looked) -> Iterator[Candidate]:
+def candidates_of(topic: Topic, named: TopicNames) -> Iterator[Candidate]:
     """Yield the candidates of a topic: fields of its messages, and values computed from them."""
     frames = [word for frame in sorted(named.frames) for word in words_of(frame)]
     type_words = words_of(topic.type.rpartition("/")[2]) if is_listed(topic.type) else []
@@ -141,9 +141,9 @@ def candidates_of(topic: Topic, named: Looked) -> Iterator[Candidate]:
     yield from _of_keys(topic, named, around)
 
 
-def _of_keys(topic: Topic, looked: Looked, around: tuple[str, ...]) -> Iterator[Candidate]:
+def _of_keys(topic: Topic, names: TopicNames, around: tuple[str, ...]) -> Iterator[Candidate]:
     """Yield the candidates of values with a key, which are texts that may hold numbers."""
-    for path, value in looked.entries.items():
+    for path, value in names.entries.items():
         own = tuple(words_of(" ".join(re.findall(r"\[([^\[\]]+)\]", path))))
         if number(value) is None:
             yield Candidate(topic, path, Kind.LABEL, own, around, UNKNOWN)
@@ -152,7 +152,7 @@ def _of_keys(topic: Topic, looked: Looked, around: tuple[str, ...]) -> Iterator[
 
 
 def _places(
-    leaf: str, meaning: Meaning, named: Looked, with_names: Mapping[str, str]
+    leaf: str, meaning: Meaning, named: TopicNames, with_names: Mapping[str, str]
 ) -> Iterator[tuple[str, list[str], str]]:
     """Yield the values of a field with their words and axis.
 

@@ -18,8 +18,8 @@ from rvmon.recordings.binding.candidates import (
     events_of,
     ranges_of,
 )
-from rvmon.recordings.binding.rank import fitting, in_such_a_unit, is_clear, wanted_of
-from rvmon.recordings.messages.file import Looked, MessageFile, names_in
+from rvmon.recordings.binding.rank import fitting, is_clear, of_same_dimension, wanted_of
+from rvmon.recordings.messages.file import MessageFile, TopicNames, names_in
 from rvmon.trace.schema import Kind
 from rvmon.units import base_unit, parse_unit, unit_table
 
@@ -65,7 +65,9 @@ def propose(spec: CheckedSpec, source: MessageFile) -> Proposal:
     for name, asked in wanted.items():
         found[name] = fitting(asked, everything if name in types else events_of(topics))
     near = {
-        name: in_such_a_unit(wanted[name], everything)[:_MOST] for name in types if not found[name]
+        name: of_same_dimension(wanted[name], everything)[:_MOST]
+        for name in types
+        if not found[name]
     }
     shown = [candidate for own in found.values() for _, candidate in own[: 2 * _MOST]]
     ranges = ranges_of(source, [*shown, *(candidate for own in near.values() for candidate in own)])
@@ -186,7 +188,7 @@ def _event_lines(fields: Mapping[str, Type], candidate: Candidate) -> Iterator[s
     payload = {}
     for name, type_ in fields.items():
         wanted = wanted_of(name, type_, ())
-        ranked = fitting(wanted, candidates_of(candidate.topic, Looked()))
+        ranked = fitting(wanted, candidates_of(candidate.topic, TopicNames()))
         if is_clear(wanted, ranked):
             payload[name] = ranked[0][1].value
         else:

@@ -85,7 +85,7 @@ def fitting(wanted: Wanted, candidates: Iterable[Candidate]) -> list[tuple[float
     fit = [
         candidate
         for candidate in candidates
-        if (_says_so(wanted, candidate) if type_ is None else _fits(wanted, type_, candidate))
+        if (_fits_event(wanted, candidate) if type_ is None else _fits(wanted, type_, candidate))
     ]
     scored = [(score, candidate) for candidate in fit if (score := _score(wanted, candidate))]
     if type_ is not None and type_.unit and any(candidate.says_unit for candidate in fit):
@@ -98,7 +98,7 @@ def fitting(wanted: Wanted, candidates: Iterable[Candidate]) -> list[tuple[float
     )
 
 
-def in_such_a_unit(wanted: Wanted, candidates: Iterable[Candidate]) -> list[Candidate]:
+def of_same_dimension(wanted: Wanted, candidates: Iterable[Candidate]) -> list[Candidate]:
     """Candidates measured in the declared unit, whatever their names; most shared words first."""
     type_ = wanted.type
     if type_ is None or not type_.unit:
@@ -154,7 +154,7 @@ def _fits(wanted: Wanted, type_: Type, candidate: Candidate) -> bool:
         if not {*AXES, "xy"} & {*candidate.own} <= {*wanted.words}:
             return False
         return candidate.meaning.sort is not Sort.MEASURED
-    return _is_along(wanted, candidate) and _is_in_unit(wanted, type_, candidate)
+    return _has_axis(wanted, candidate) and _is_in_unit(wanted, type_, candidate)
 
 
 def _is_of_another(wanted: Wanted, candidate: Candidate) -> bool:
@@ -170,7 +170,7 @@ def _is_of_another(wanted: Wanted, candidate: Candidate) -> bool:
     return not all(is_found(word, wanted.words) for word in subjects)
 
 
-def _says_so(wanted: Wanted, candidate: Candidate) -> bool:
+def _fits_event(wanted: Wanted, candidate: Candidate) -> bool:
     """Whether the last part of a topic has only words of the event; a field except `data` fits."""
     if candidate.value not in ("", "data"):
         return True
@@ -178,7 +178,7 @@ def _says_so(wanted: Wanted, candidate: Candidate) -> bool:
     return all(word in EMPTY or is_found(word, wanted.words) for word in last)
 
 
-def _is_along(wanted: Wanted, candidate: Candidate) -> bool:
+def _has_axis(wanted: Wanted, candidate: Candidate) -> bool:
     """Whether a candidate has the axis of the name, or an axis that the words of both imply."""
     if wanted.axis or not candidate.axis:
         return wanted.axis == candidate.axis

@@ -9,7 +9,7 @@ from rvmon.units import Unit, parse_unit
 
 Dimension = tuple[tuple[str, int], ...]
 
-_SAME = {
+_SYNONYMS = {
     "speed": "velocity vel velocities groundspd spd",
     "acceleration": "acc accel accelerometer accelerations",
     "command": "cmd commanded commands setpoint desired des target goal reference ref teleop",
@@ -47,16 +47,16 @@ _SAME = {
 }
 """Synonyms by canonical word."""
 
-_CANONICAL = {word: one for one, words in _SAME.items() for word in words.split()}
+_CANONICAL = {word: one for one, words in _SYNONYMS.items() for word in words.split()}
 
 
 def _set(*lines: str) -> frozenset[str]:
     return frozenset(word for line in lines for word in line.split())
 
 
-_APART = re.compile(r"[A-Z]+(?![^\W\d_A-Z])|[A-Z]?[^\W\d_A-Z]+|\d+")
+_WORD = re.compile(r"[A-Z]+(?![^\W\d_A-Z])|[A-Z]?[^\W\d_A-Z]+|\d+")
 
-_JOINED = {
+_COMPOUNDS = {
     **{f"v{axis}": ("speed", axis) for axis in "xyz"},
     **{f"a{axis}": ("acceleration", axis) for axis in "xyz"},
     "groundspeed": ("ground", "speed"),
@@ -182,8 +182,8 @@ def words_of(text: str) -> list[str]:
     (['origin', 'altitude'], ['speed', 'command'], ['climb'])
     """
     plain = re.sub(r"(?i)\b(e|emergency)[_ ]?stop(ped)?(?![a-z])", "estop", text.replace("_", " "))
-    found = [word.casefold() for word in _APART.findall(plain)]
-    split = [part for word in found for part in _JOINED.get(word, (word,))]
+    found = [word.casefold() for word in _WORD.findall(plain)]
+    split = [part for word in found for part in _COMPOUNDS.get(word, (word,))]
     words = [_CANONICAL.get(word, word) for word in split]
     if found[0:1] in (["ref"], ["reference"]) and not _OF_PLACES.isdisjoint(words[1:2]):
         words[0] = "origin"

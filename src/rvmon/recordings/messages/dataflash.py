@@ -178,7 +178,7 @@ def _damage(log: Any, data: Any, starts: Mapping[int, Any], end: int) -> list[Ou
     )
     order = np.argsort(places, kind="stable")
     places, lengths = places[order], lengths[order]
-    behind = places + lengths
+    ends = places + lengths
     times = np.full(len(places), -1, np.int64)
     for number, own in starts.items():
         form = log.formats[number]
@@ -188,15 +188,15 @@ def _damage(log: Any, data: Any, starts: Mapping[int, Any], end: int) -> list[Ou
             stamped = _rows(form, data, inside)[stamps.column]
             times[np.searchsorted(places, inside)] = ticks_of_column(stamped, stamps)
     found = []
-    for gap in np.flatnonzero(behind[:-1] != places[1:]).tolist():
+    for gap in np.flatnonzero(ends[:-1] != places[1:]).tolist():
         before, after = times[: gap + 1], times[gap + 1 :]
         since = int(before.max())  # a lost message may have had the stamp of the one before
         known = after[after >= 0]
         until = int(known[0]) if len(known) else max(end, since)
-        why = f"there is no message at byte {int(behind[gap]):,}"
+        why = f"there is no message at byte {int(ends[gap]):,}"
         found.append(Outage(since, max(since, until), why))
-    rest = data[int(behind[-1]) :] if len(behind) else data
+    rest = data[int(ends[-1]) :] if len(ends) else data
     is_filling = len(rest) < _PAGE and bool((rest == 0).all() or (rest == _ERASED).all())
-    if len(places) and (behind[-1] > len(data) or not is_filling):
+    if len(places) and (ends[-1] > len(data) or not is_filling):
         found.append(Outage(end, end + 1, "it ends within a message"))
     return sorted(found, key=lambda outage: outage.since)

@@ -57,7 +57,7 @@ class Meaning(Struct, frozen=True):
 
 UNKNOWN = Meaning(Sort.OPEN)  # the meaning of fields that are in no table
 
-_OF_OTHERS = Meaning(Sort.OPEN, is_scaled=True)
+_UNKNOWN_UNIT = Meaning(Sort.OPEN, is_scaled=True)
 """The meaning of a field for which the recording states a unit that is not known here."""
 
 
@@ -81,7 +81,7 @@ def meaning_of(path: str, topic: Topic) -> Meaning:
             found = inner if found.sort is Sort.OPEN else found
         way = ".".join(steps[:place])
         if found.sort is Sort.OPEN:
-            found = _told(way, topic)
+            found = _stated(way, topic)
         stated = entry.removeprefix("@") if entry.startswith("@") else topic.messages.get(way, "")
         type_name = plain_type(stated)
     return found
@@ -101,13 +101,13 @@ def plain_type(type_name: str) -> str:
     return re.sub(r"[/.]msg[/.]", "/", type_name)
 
 
-def _told(path: str, topic: Topic) -> Meaning:
+def _stated(path: str, topic: Topic) -> Meaning:
     """The meaning that a recording states for a field, by a unit or by a comment."""
     said = topic.units.get(path, "")
     unit = "1" if said in ("1", "-") else spoken_unit(said)
     is_number = topic.leaves.get(path) in (Kind.REAL, Kind.INT)
     if said and not unit:
-        return _OF_OTHERS
+        return _UNKNOWN_UNIT
     comment = topic.comments.get(path)
     if not said and comment and (is_number or is_vector(topic.messages.get(path, ""))):
         unit = unit_in_comment(comment)

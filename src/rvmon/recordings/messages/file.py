@@ -165,7 +165,7 @@ _FIRST_OF_MANY = 300
 _FRAMES = ("header.frame_id", "child_frame_id")
 
 
-class Looked(Struct, frozen=True):
+class TopicNames(Struct, frozen=True):
     """The names found in the first messages of a topic."""
 
     frames: frozenset[str] = frozenset()  # the frames in headers
@@ -175,7 +175,7 @@ class Looked(Struct, frozen=True):
     entries: Mapping[str, str] = field(default_factory=dict)
 
 
-def names_in(source: MessageFile) -> Mapping[str, Looked]:
+def names_in(source: MessageFile) -> Mapping[str, TopicNames]:
     """Find the names in the first messages of each topic: frames, array elements, keys."""
     wanted: dict[str, list[str]] = {}
     keys: dict[str, list[str]] = {}
@@ -204,7 +204,7 @@ def names_in(source: MessageFile) -> Mapping[str, Looked]:
             if counts[topic] == (_FIRST_OF_MANY if keys[topic] else _FIRST):
                 reading.discard(topic)
     return {
-        topic: Looked(
+        topic: TopicNames(
             frozenset(name for leaf in _FRAMES for name in found[topic].get(leaf, ()) if name),
             {leaf: tuple(own) for leaf, own in found[topic].items() if leaf not in _FRAMES},
             entries[topic],

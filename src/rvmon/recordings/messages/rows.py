@@ -210,8 +210,8 @@ class Differences(Struct):
         """The change of the least difference from the first lot to the last; 0 for few messages."""
         if self.count < 2 * SOME:
             return 0
-        is_begun = 0 < self.count % SOME < ENOUGH  # the last lot has too few messages yet
-        return self.lots[-2 if is_begun else -1] - self.lots[0]
+        is_too_short = 0 < self.count % SOME < ENOUGH  # the last lot has too few messages yet
+        return self.lots[-2 if is_too_short else -1] - self.lots[0]
 
 
 class Skew(Struct):

@@ -50,7 +50,7 @@ class TableMessages(Messages):
     """An open folder of tables."""
 
     def __init__(self, folder: Path) -> None:
-        self._tables = {name: _looked_over(table) for name, table in _tables(folder)}
+        self._tables = {name: _with_kinds(table) for name, table in _tables(folder)}
         self.topics = {
             name: Topic(
                 name,
@@ -134,7 +134,7 @@ def _header(table: _Table, rows: Iterator[tuple[int, list[str]]]) -> tuple[Seque
     return layout.header, layout.stamps
 
 
-def _looked_over(table: _Table) -> _Table:
+def _with_kinds(table: _Table) -> _Table:
     with _lines(table) as rows:
         header, stamps = _header(table, rows)
         cells: dict[str, list[str]] = {name: [] for name in header}

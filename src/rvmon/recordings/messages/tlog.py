@@ -48,10 +48,10 @@ class TelemetryMessages(Messages):
         self.count = len(self._times)  # of all packets
         # the last instant of packets and outages, ticks
         self.end = max(max(self._times), max((outage.until for outage in self.outages), default=0))
-        senders = Counter(self._called(key) for key in self._keys if key not in self._lost)
+        senders = Counter(self._name_of(key) for key in self._keys if key not in self._lost)
         self._names = []
         for key in self._keys:
-            name = "" if key in self._lost else self._called(key)
+            name = "" if key in self._lost else self._name_of(key)
             sender = f"/sys{key[1]}_comp{key[2]}" if senders[name] > 1 else ""
             self._names.append(name and f"{sender}/{name}")
         # by name, one topic per message and sender; the name has the sender if there are several
@@ -71,7 +71,7 @@ class TelemetryMessages(Messages):
                 place += 1
                 continue
             if lost >= 0:
-                self._lose(lost, last, micros)
+                self._note_loss(lost, last, micros)
                 lost = -1
             size, key = packet
             last = micros
@@ -79,12 +79,12 @@ class TelemetryMessages(Messages):
             self._places.append(place + _STAMP)
             self._senders.append(self._keys.setdefault(key, len(self._keys)))
             place += _STAMP + size
-        self._lose_strangers()
+        self._drop_lone_packets()
         if self._times and (lost >= 0 or place < len(data)):
             end = max(self._times)
             self.outages.append(Outage(end, end + 1, "it ends within a packet"))
 
-    def _lose_strangers(self) -> None:
+    def _drop_lone_packets(self) -> None:
         """Turn a lone packet that fits no known definition into an outage: it may be damaged.
 
         Other dialects send their messages repeatedly, so that several packets agree.
@@ -101,7 +101,7 @@ class TelemetryMessages(Messages):
                 self.outages.append(Outage(min(near), max(near), why))
         self.outages.sort(key=lambda outage: outage.since)
 
-    def _lose(self, place: int, last: int, micros: int) -> None:
+    def _note_loss(self, place: int, last: int, micros: int) -> None:
         # A lost packet may have had the stamp of the packet before it.
         since = last * 1_000 if last >= 0 else micros * 1_000 - 1
         until = max(since, micros * 1_000)
@@ -122,10 +122,10 @@ class TelemetryMessages(Messages):
             header, signature = 10, 13 if head[2] & _IS_SIGNED else 0
             system, component = head[5], head[6]
             number = head[7] | head[8] << 8 | head[9] << 16
-        behind = start + header + head[1]
-        if behind + 2 + signature > len(data):
+        body_end = start + header + head[1]
+        if body_end + 2 + signature > len(data):
             return None
-        extra = self._extra(number, data[start + 1 : behind], data[behind : behind + 2])
+        extra = self._extra(number, data[start + 1 : body_end], data[body_end : body_end + 2])
         if extra is None:
             return None
         return header + head[1] + 2 + signature, (number, system, component, extra)
@@ -144,7 +144,7 @@ class TelemetryMessages(Messages):
                 return extra
         return None
 
-    def _called(self, key: _Key) -> str:
+    def _name_of(self, key: _Key) -> str:
         number, *_, extra = key
         known = self._dialect.mavlink_map.get(number) if extra == _OURS else None
         return f"message_{number}" if known is None else str(known.msgname)

@@ -94,7 +94,7 @@ bool csv_take(csv_reader *r, int32_t column, csv_cell c)
 }
 
 /* The place after an end of line, which starts at `at`. */
-static const char *behind(const char *at, const char *end)
+static const char *after_line_end(const char *at, const char *end)
 {
     return ((*at == '\r') && (at + 1 < end) && (at[1] == '\n')) ? at + 2 : at + 1;
 }
@@ -123,7 +123,7 @@ const char *csv_quoted(const csv_reader *r, const char *at, csv_cell *c, int64_t
             c->is_doubled = true;
             at += 2;
         } else if ((*at == '\n') || (*at == '\r')) {
-            at = behind(at, end);
+            at = after_line_end(at, end);
             (*line)++;
         } else {
             at++;
@@ -145,7 +145,7 @@ static row_end read_row(csv_reader *r, const char *at, const char **next, int64_
         blank++;
     }
     if ((blank == end) || (*blank == '\n') || (*blank == '\r')) {
-        *next = (blank == end) ? end : behind(blank, end);
+        *next = (blank == end) ? end : after_line_end(blank, end);
         *line += 1;
         return is_open(r, blank) ? ROW_OPEN : ROW_BLANK;
     }
@@ -184,7 +184,7 @@ static row_end read_row(csv_reader *r, const char *at, const char **next, int64_
             break;
         }
     }
-    *next = (at == end) ? end : behind(at, end);
+    *next = (at == end) ? end : after_line_end(at, end);
     *line += 1;
     if (is_odd || (place < r->width)) {
         return ROW_ODD;
@@ -193,7 +193,7 @@ static row_end read_row(csv_reader *r, const char *at, const char **next, int64_
 }
 
 /* The end of the last whole line of the text. */
-static const char *behind_lines(const csv_reader *r)
+static const char *end_of_lines(const csv_reader *r)
 {
     const char *at = r->text + r->size;
     while ((at > r->text) && (at[-1] != '\n')) {
@@ -204,7 +204,7 @@ static const char *behind_lines(const csv_reader *r)
 
 csv_end csv_read(csv_reader *r)
 {
-    const char *lines_end = behind_lines(r);
+    const char *lines_end = end_of_lines(r);
     while (r->at < r->size) {
         const char *next = NULL;
         const int64_t odd_count = r->odd_count;

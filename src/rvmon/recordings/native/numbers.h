@@ -60,7 +60,7 @@ static const uint64_t MOST_TICKS[] = {
 
 typedef struct {
     uint64_t mantissa;
-    int32_t behind;   /* digits after the point */
+    int32_t decimals; /* digits after the point */
     int32_t exponent; /* as written */
     bool is_negative;
     bool is_long;  /* it has more digits than `mantissa` holds */
@@ -133,7 +133,7 @@ static inline const char *decimal_at(const char *from, const char *to, decimal *
     int64_t digits;
     d->is_negative = is_signed && (*from == '-');
     d->mantissa = 0;
-    d->behind = 0;
+    d->decimals = 0;
     d->exponent = 0;
     at = digits_at_once(first, to, &d->mantissa);
     digits = at - first;
@@ -141,8 +141,8 @@ static inline const char *decimal_at(const char *from, const char *to, decimal *
     if ((at < to) && (*at == '.')) {
         const char *point = at;
         at = digits_at_once(at + 1, to, &d->mantissa);
-        d->behind = (int32_t)(at - point) - 1;
-        digits += d->behind;
+        d->decimals = (int32_t)(at - point) - 1;
+        digits += d->decimals;
     }
     if (digits == 0) {
         return NULL;
@@ -169,7 +169,7 @@ static inline const char *decimal_at(const char *from, const char *to, decimal *
 /* Convert a decimal by one operation, with one rounding; false unless both operands are exact. */
 static inline bool exact_of(const decimal *d, csv_number *made)
 {
-    const int32_t power = d->exponent - d->behind;
+    const int32_t power = d->exponent - d->decimals;
     const double whole = d->is_negative ? -(double)d->mantissa : (double)d->mantissa;
     if (d->is_long || (d->mantissa > EXACT) || (power > MOST_POWER) || (power < -MOST_POWER)) {
         return false;
@@ -182,11 +182,11 @@ static inline bool exact_of(const decimal *d, csv_number *made)
 static inline int whole_of(const decimal *d, uint64_t most, csv_number *made)
 {
     uint64_t whole = d->mantissa;
-    if (d->is_long || (d->exponent != 0) || (d->behind > MOST_DIGITS)) {
+    if (d->is_long || (d->exponent != 0) || (d->decimals > MOST_DIGITS)) {
         return CSV_ODD;
     }
-    if (d->behind > 0) {
-        const uint64_t scale = WHOLE_POWERS[d->behind];
+    if (d->decimals > 0) {
+        const uint64_t scale = WHOLE_POWERS[d->decimals];
         most = (most > EXACT) ? EXACT : most; /* Python reads a number with a point as a double */
         if (whole % scale != 0) {
             return CSV_ODD;
@@ -207,15 +207,15 @@ static inline int stamp_of(const decimal *d, int32_t places, csv_number *made)
     if (d->is_long || (d->exponent != 0) || ((places == 0) && !d->is_whole)) {
         return CSV_ODD;
     }
-    if (d->behind < places) {
-        if (ticks > MOST_TICKS[places - d->behind]) {
+    if (d->decimals < places) {
+        if (ticks > MOST_TICKS[places - d->decimals]) {
             return CSV_ODD;
         }
-        ticks *= WHOLE_POWERS[places - d->behind];
-    } else if (d->behind - places > MOST_DIGITS) {
+        ticks *= WHOLE_POWERS[places - d->decimals];
+    } else if (d->decimals - places > MOST_DIGITS) {
         return CSV_ODD;
-    } else if (d->behind > places) {
-        const uint64_t scale = WHOLE_POWERS[d->behind - places];
+    } else if (d->decimals > places) {
+        const uint64_t scale = WHOLE_POWERS[d->decimals - places];
         const uint64_t rest = ticks % scale;
         ticks /= scale;
         if ((rest > scale - rest) || ((rest == scale - rest) && (ticks % 2 == 1))) {
@@ -247,7 +247,7 @@ static inline int number_of(const csv_reader *r, int32_t kind, const decimal *d,
 /* A number of up to 16 digits. */
 typedef struct {
     uint64_t mantissa;
-    int32_t behind; /* digits after the point */
+    int32_t decimals; /* digits after the point */
     bool is_negative;
 } short_decimal;
 
@@ -270,26 +270,26 @@ static inline bool longer_decimal(const char *to, int64_t size, short_decimal *m
     uint64_t high = csv_word(to - 8) ^ ZEROS;
     uint64_t low;
     uint64_t stops = stops_in(high);
-    int32_t behind = 0;
+    int32_t decimals = 0;
     if ((size < 9) || (size > 16)) {
         return false;
     }
     low = (csv_word(to - 16) ^ ZEROS) >> (128 - 8 * size) << (128 - 8 * size);
     if (stops != 0) {
-        behind = without_point(&high, stops);
-        if ((behind < 0) || (stops_in(low) != 0)) {
+        decimals = without_point(&high, stops);
+        if ((decimals < 0) || (stops_in(low) != 0)) {
             return false;
         }
         high |= low >> 56;
         low <<= 8;
     } else if ((stops = stops_in(low)) != 0) {
-        behind = without_point(&low, stops);
-        if (behind < 0) {
+        decimals = without_point(&low, stops);
+        if (decimals < 0) {
             return false;
         }
-        behind += 8;
+        decimals += 8;
     }
-    made->behind = behind;
+    made->decimals = decimals;
     made->mantissa = eight_digits(high) + eight_digits(low) * WHOLE_POWERS[8];
     return true;
 }
@@ -308,10 +308,10 @@ CSV_INNERMOST bool short_of(const char *from, const char *to, short_decimal *mad
     }
     digits = (csv_word(to - 8) ^ ZEROS) >> (64 - 8 * size) << (64 - 8 * size);
     stops = stops_in(digits);
-    made->behind = 0;
+    made->decimals = 0;
     if (stops != 0) {
-        made->behind = without_point(&digits, stops);
-        if ((made->behind < 0) || (size == 1)) {
+        made->decimals = without_point(&digits, stops);
+        if ((made->decimals < 0) || (size == 1)) {
             return false;
         }
     }

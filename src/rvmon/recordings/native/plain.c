@@ -90,12 +90,12 @@ static int32_t split(const csv_reader *r, int32_t size, int64_t most, stretch *s
             } else if ((found == '"') && (place == *next + 1)) {
                 csv_cell c = {text, text, false};
                 int64_t lines = 0;
-                const char *behind = csv_quoted(r, text + place + 1, &c, &lines);
-                if ((behind == NULL) || (lines > 0) || !csv_ends_cell(*behind)
-                    || (behind - text >= size)) {
+                const char *after = csv_quoted(r, text + place + 1, &c, &lines);
+                if ((after == NULL) || (lines > 0) || !csv_ends_cell(*after)
+                    || (after - text >= size)) {
                     return end;
                 }
-                at = (int32_t)(behind - text);
+                at = (int32_t)(after - text);
                 break;
             }
         }
@@ -155,7 +155,7 @@ static void read_reals(const csv_reader *r, const column *c, stretch *s)
         const csv_cell found = cell_at(s, ends);
         short_decimal d;
         if (short_of(found.from, found.to, &d) && (d.mantissa <= EXACT)) {
-            const double real = (double)(int64_t)d.mantissa / POWERS[d.behind];
+            const double real = (double)(int64_t)d.mantissa / POWERS[d.decimals];
             c->numbers[row].real = d.is_negative ? -real : real;
         } else {
             read_other(r, c, s, row);
@@ -172,10 +172,10 @@ static void read_wholes(const csv_reader *r, const column *c, int32_t places, st
     for (row = 0; row < rows; row++, ends += c->stride) {
         const csv_cell found = cell_at(s, ends);
         short_decimal d;
-        if (short_of(found.from, found.to, &d) && (d.behind <= places)
+        if (short_of(found.from, found.to, &d) && (d.decimals <= places)
             && (found.to[-1] != '.') /* nanoseconds must be digits alone */
-            && (d.mantissa <= MOST_TICKS[places - d.behind])) {
-            const int64_t whole = (int64_t)(d.mantissa * WHOLE_POWERS[places - d.behind]);
+            && (d.mantissa <= MOST_TICKS[places - d.decimals])) {
+            const int64_t whole = (int64_t)(d.mantissa * WHOLE_POWERS[places - d.decimals]);
             c->numbers[row].whole = d.is_negative ? -whole : whole;
         } else {
             read_other(r, c, s, row);

@@ -21,7 +21,7 @@ static bool quotient(uint64_t mantissa, double power, double *made)
 int csv_inexact(const csv_reader *r, const decimal *d, const char *from, const char *to,
                 csv_number *made)
 {
-    const int32_t power = d->exponent - d->behind;
+    const int32_t power = d->exponent - d->decimals;
     char copy[LONGEST + 1];
     double found;
     if (!d->is_long && (power <= 0) && (power >= -MOST_POWER)

@@ -11,7 +11,7 @@ from rvmon.errors import TraceError
 from rvmon.recordings.messages import Topic
 from rvmon.recordings.messages.field_meanings import Sort, meaning_of
 from rvmon.recordings.messages.fields import Get, arrays_with_names, field_of, getter
-from rvmon.recordings.messages.file import Looked, MessageFile, names_in
+from rvmon.recordings.messages.file import MessageFile, TopicNames, names_in
 from rvmon.recordings.messages.topic_matching import dotted
 from rvmon.recordings.starter.observed_values import Shape, Shapes
 from rvmon.recordings.values import FALSE_WORDS, TRUE_WORDS
@@ -213,7 +213,7 @@ def _unit(leaf: str, topic: Topic) -> str:
     return meaning.units[0].symbol if is_clear and topic.leaves[leaf] is Kind.REAL else ""
 
 
-def _elements(topic: Topic, looked: Looked) -> Iterator[tuple[str, str, Shape]]:
+def _elements(topic: Topic, looked: TopicNames) -> Iterator[tuple[str, str, Shape]]:
     """Yield array, name and shape of the named elements of arrays, such as joint positions."""
     for array, names in arrays_with_names(topic).items():
         shape = Shape(topic.leaves[f"{array}[]"], unit=_unit(f"{array}[]", topic))
