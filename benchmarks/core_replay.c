@@ -1,12 +1,12 @@
-/* Has the core judge what benchmarks/core_mutants.py has written, and says in one line of each case
- * what came of it. So mutants of the core are compared with it, and builds for other machines.
+/* Judges the cases that benchmarks/core_mutants.py has written, and prints one line per case. Mutants of
+ * the core, and builds for other machines, must print the same.
  *
- * A case is judged step by step, asked now and then what is open and due; the same after a reset,
- * without asking; by rows, where it can be; put away and taken up again; and in blocks of memory, most of
- * them too small. The line is a sum of all records in the order in which they came, one of what was open,
- * noted and measured, then letters for what should never be: a, o, k, m: asked or reset, by rows, taken up,
- * in a block it says something else; d: time alone decided what was not due; f, t: a sample was taken after
- * the end, or twice; g: it was short of memory, and green; r, s: rows, or a step, were refused. */
+ * A case is judged in several ways: step by step, with queries for open and due attempts; again after a
+ * reset, without queries; by rows, if possible; continued from snapshots; and in blocks of memory, most of
+ * them too small. The line has a checksum of all records in their order, a checksum of what was open, noted
+ * and measured, and letters for faults. a, o, k, m: the results differ with queries or after a reset, by
+ * rows, from snapshots, in a block. d: time alone decided something that was not due. f, t: a sample was
+ * accepted after the end, or twice. g: a run short of memory was green. r, s: rows, or a step, refused. */
 #include "../fuzz/told.h"
 
 #include "plan/plan.h"
@@ -16,16 +16,16 @@
 #define ROWS_MOST 128
 #define NAMES_MOST 32
 
-/* A sample as it is written. */
+/* A sample of a case. */
 typedef struct {
     int64_t t;
     int32_t count;
-    bool in_rows;              /* no name comes twice */
+    bool in_rows;              /* no name occurs twice */
     rv_update updates[UPDATES_MOST];
     rv_number fields[UPDATES_MOST][FIELDS_MOST];
 } sample;
 
-/* Of a loss, and of what is found again, the updates have no more than names. */
+/* For lost and found, the updates have only names. */
 enum { A_SAMPLE, AN_ADVANCE, A_LOSS, A_FINDING };
 
 typedef struct {
@@ -43,10 +43,10 @@ typedef struct {
     action actions[ROWS_MOST];
 } story;
 
-/* What was found that should never be, as letters. */
+/* Faults found, as letters. */
 typedef struct {
     uint64_t sum;
-    uint64_t open;             /* of what was open in between */
+    uint64_t open;             /* checksum of what was open in between */
     char wrong[8];
 } told;
 
@@ -72,7 +72,7 @@ static rv_number number_at(const int64_t *words)
     return made;
 }
 
-/* Read a sample; returns what is behind it. */
+/* Read a sample; returns the position after it. */
 static const int64_t *read_sample(const int64_t *at, sample *s)
 {
     int32_t i;
@@ -108,13 +108,13 @@ static const int64_t *read_sample(const int64_t *at, sample *s)
     return at;
 }
 
-/* Read a case; returns what is behind it. */
+/* Read a case; returns the position after it. */
 static const int64_t *read_story(const int64_t *at, story *x)
 {
     int64_t i;
     int32_t k;
     const int64_t size = *at++;
-    if (size > 0) { /* else the plan of the case before */
+    if (size > 0) { /* otherwise the plan of the previous case */
         x->plan = at;
         x->size = (size_t)size;
         at += size / 8;
@@ -153,7 +153,7 @@ static void note_number(told *x, const rv_number *n)
     add(x, bits);
 }
 
-/* Tell a monitor of an action. */
+/* Pass an action to a monitor. */
 static int tell(rv_monitor *m, const action *a)
 {
     int32_t names[UPDATES_MOST];
@@ -169,7 +169,7 @@ static int tell(rv_monitor *m, const action *a)
     }
 }
 
-/* Take the records of a call, with notes and figures. `due`: before, time alone decides nothing. */
+/* Take the records of a call, with notes and margins. Before `due`, time alone decides nothing. */
 static void note_records(told *x, rv_monitor *m, int64_t due, int64_t t)
 {
     const rv_record *records;
@@ -198,13 +198,13 @@ static void note_records(told *x, rv_monitor *m, int64_t due, int64_t t)
 
 static bool note_open(void *user, const rv_record *record, const rv_number *captured)
 {
-    uint64_t *sum = user; /* in any order */
+    uint64_t *sum = user; /* independent of the order */
     *sum += (uint64_t)record->triggered * 31 + (uint64_t)record->requirement * 7 + record->number
             + 1000 * (uint64_t)record->in_doubt + ((captured != NULL) ? 1 : 0);
-    return true; /* go on */
+    return true; /* continue */
 }
 
-/* A call that has to succeed, if memory is there. */
+/* A call that has to succeed if there is enough memory. */
 static void demand(told *x, const rv_monitor *m, int code)
 {
     if (code != (rv_spoilt(m) ? RV_NO_MEMORY : RV_OK)) {
@@ -234,13 +234,13 @@ static void note_end(told *x, rv_monitor *m, const story *s)
 
 static const rv_memory heap = {malloc, realloc, free, NULL, 0};
 
-/* Have another monitor go on from where one stands, which is freed. */
+/* Continue in a new monitor from a snapshot of the old one, which is freed. */
 static rv_monitor *taken_up(told *x, rv_monitor *m, const story *s)
 {
     const size_t size = rv_save(m, NULL, 0);
     void *bytes = malloc(size + 1U);
     rv_monitor *made = rv_new(s->plan, s->size, heap);
-    if ((size == 0) || (bytes == NULL) || (made == NULL)) { /* what is measured is not put away */
+    if ((size == 0) || (bytes == NULL) || (made == NULL)) { /* a run with margins has no snapshot */
         rv_free(made);
         made = m;
     } else if ((rv_keep_notes(made, NULL, NULL) != RV_OK) || (rv_save(m, bytes, size) != size)
@@ -255,7 +255,7 @@ static rv_monitor *taken_up(told *x, rv_monitor *m, const story *s)
     return made;
 }
 
-/* Step by step. `asks`: of all that is open and due, in between. `put_away`: so it is then, too. */
+/* Step by step. `asks`: query what is open and due in between. `put_away`: continue from snapshots. */
 static told by_steps(rv_monitor **own, const story *s, bool asks, bool put_away)
 {
     rv_monitor *m = *own;
@@ -285,7 +285,7 @@ static told by_steps(rv_monitor **own, const story *s, bool asks, bool put_away)
     return x;
 }
 
-/* What rows say of a name or field. */
+/* The column of a name or field. */
 typedef struct {
     uint8_t says[ROWS_MOST];
     double reals[ROWS_MOST];
@@ -367,7 +367,7 @@ static void judge_table(told *x, rv_monitor *m, table *made)
     (void)memset(made, 0, sizeof *made);
 }
 
-/* By rows: as many samples at once as no name comes twice in. */
+/* By rows: consecutive samples without repeated names are judged as one table. */
 static told by_rows(rv_monitor *m, const story *s)
 {
     static table made;
@@ -396,7 +396,7 @@ static void mark_absent(rv_monitor *m, const story *s)
     }
 }
 
-/* What another way found wrong, and that it says something else. */
+/* Add the faults of another way, and `letter` if its results differ. */
 static void blame_other(told *x, const told *other, char letter)
 {
     size_t i;
@@ -417,7 +417,7 @@ static void judge(const story *s)
     size_t used;
     size_t size;
     if (m == NULL) {
-        exit(3); /* the plan is of another version */
+        exit(3); /* the plan belongs to another version */
     }
     (void)rv_keep_notes(m, NULL, NULL);
     mark_absent(m, s);

@@ -1,4 +1,4 @@
-"""Coverpoints and crosses on random traces: what a monitor finds against the definition."""
+"""Coverpoints and crosses on random traces: hits found by a monitor against the definition."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ from rvmon.testing.law.word import Truth, Word, conjunction
 from rvmon.trace.sample import Sample
 
 EACH = 10
-"""Traces of a specification."""
+"""The number of traces for each specification."""
 
 Found = dict[str, tuple[int, int | None]]
-"""By combination of bins, how often it was hit and when first."""
+"""For each combination of bins: the number of hits, and the instant of the first."""
 
 
 def _hits(word: Word, axes: Sequence[Sequence[Bin]], upon: Formula | None) -> Found:
@@ -49,13 +49,13 @@ def _hits(word: Word, axes: Sequence[Sequence[Bin]], upon: Formula | None) -> Fo
 
 
 def _truth(word: Word, formula: Formula, k: int) -> Truth:
-    """As of a trigger: what is not born is false."""
+    """The truth as for a trigger: unborn is taken as false."""
     found = Truths(word, {}).state(formula, k)
     return Truth.FALSE if found is Truth.UNBORN else found
 
 
 def _starts(word: Word, upon: Formula) -> list[int]:
-    """Where an attempt `upon` it would surely start."""
+    """The positions at which an attempt `upon` this formula would certainly start."""
     truths = [_truth(word, upon, k) for k in range(len(word.letters))]
     return [
         k
@@ -65,13 +65,13 @@ def _starts(word: Word, upon: Formula) -> list[int]:
 
 
 def _stretches(truths: Sequence[Truth]) -> list[int]:
-    """Where it is true, and was false since it last was, or was never true."""
+    """The starts of stretches: true positions that are the first, or follow a false one."""
     true = [k for k, truth in enumerate(truths) if truth is Truth.TRUE]
     return true[:1] + [k for j, k in pairwise(true) if Truth.FALSE in truths[j:k]]
 
 
 def by_law(case: Case) -> dict[str, Found]:
-    """What the definition says of coverpoints and crosses; what hits nothing is left out."""
+    """The hits of coverpoints and crosses by definition; groups without hits are left out."""
     spec = case.spec
     word = word_of(spec, case.samples, end=case.end, advances=case.advances, names=case.names)
     found = {one.name: _hits(word, [one.bins], one.upon) for one in spec.coverpoints.values()}
@@ -82,7 +82,7 @@ def by_law(case: Case) -> dict[str, Found]:
 
 
 def by_monitor(case: Case) -> dict[str, Found]:
-    """What a monitor finds: how often, and when first."""
+    """The hits that a monitor finds."""
     monitor = SpecCoverage(CompiledSpec(case.spec)).monitor(sources=case.names, requirements=False)
     for one in case.actions:
         if isinstance(one, Sample):
@@ -96,7 +96,7 @@ def by_monitor(case: Case) -> dict[str, Found]:
 
 
 def judge_hits(found: Campaign, seed: int, numbers: range) -> None:
-    """What coverpoints and crosses are hit against the definition."""
+    """Hits of coverpoints and crosses against the definition."""
 
     def drawn(place: object) -> Iterator[Case]:
         rng = place if isinstance(place, random.Random) else random.Random(str(place))

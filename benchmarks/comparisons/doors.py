@@ -1,4 +1,4 @@
-"""Recordings through every door, and damage to all that is read."""
+"""The same recordings in every format, and damaged input of every kind."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 
 EACH = 5
-"""Recordings of a specification."""
+"""The number of recordings for each specification."""
 
 
 def judge_doors(found: Campaign, seed: int, numbers: range) -> None:
-    """A recording as CSV, JSON lines, Parquet, arrays, frames …: one report, byte by byte."""
+    """A recording as CSV, JSON lines, Parquet, arrays, frames …: the same report, byte by byte."""
     with tempfile.TemporaryDirectory() as name:
         for number in numbers:
             for place, spec, content in _contents(f"{seed}/{number}"):

@@ -1,11 +1,10 @@
-"""The core against the law on arrays, on traces too long for the oracle: what is kept stays right.
+"""The core against the semantics computed on arrays, on traces too long for the oracle.
 
-Random formulas with windows of up to some hundred ticks, required from the start or upon a signal,
-in held and in sampled time; nothing is unknown. When a formula is decided at a position follows
-from when its operands are, as the law has it of prefixes: that is worked out for all positions at
-once, and has nothing in common with the core, neither automata, queues, networks nor the core form
-of rv. Compared are, of every attempt, trigger, verdict and instant of what the prefix
-decides, stepped and by rows.
+Random formulas with windows of up to some hundred ticks are required from the start or upon a
+signal, in held and in sampled time; nothing is unknown. The instant at which a formula is decided
+at a position follows from the decision instants of its operands. It is computed for all positions
+at once, and shares nothing with the core: no automata, queues or networks. For every attempt the
+trigger, and verdict and instant if a prefix decides it, are compared, step by step and by rows.
 """
 
 from __future__ import annotations
@@ -35,34 +34,34 @@ from rvmon.verdicts.report import Report
 
 Instants = NDArray[np.int64]
 Decided = tuple[Instants, Instants]
-"""Of a formula, by position, the instants at which it is known to be true, and to be false."""
+"""For each position, the instants at which a formula is known to be true, and to be false."""
 
 NEVER = np.iinfo(np.int64).max
 LENGTHS = (1, 7, 40)
-"""What the windows of a few ticks are multiplied by."""
+"""The factors by which windows of a few ticks are scaled."""
 
 Told = Mapping[int, tuple[int, int | None, Verdict | None]]
-"""By number of an attempt its trigger, and instant and verdict if the prefix decides it."""
+"""By number of an attempt: trigger, and decision instant and verdict if a prefix decides it."""
 
 
 class Decisions:
-    """When formulas are decided, at each position of a trace.
+    """The decision instants of formulas at each position of a trace.
 
     Args:
-        case: of one requirement, without unknown values.
+        case: has one requirement, and no unknown values.
     """
 
     def __init__(self, case: Case) -> None:
         stamps = np.array([one.t for one in case.samples], np.int64)
         is_held = case.spec.time is TimeModel.HELD
         self.times = np.arange(stamps[0], stamps[-1] + 1) if is_held else stamps
-        # That a window is over, or no sample follows, is known an instant behind the end.
+        # A window that ends with the trace is known to be over one tick after the end.
         self._last = int(stamps[-1]) + 1
         self._row_at = np.searchsorted(stamps, self.times, "right") - 1
         self._samples = case.samples
 
     def of(self, formula: rv.Formula) -> Decided:
-        """Of a formula in the operators of `to_core`."""
+        """The decision instants of a formula that has only the operators of `to_core`."""
         match formula:
             case rv.SignalAtom(name=name):
                 told = np.array([one.values[name] for one in self._samples], bool)[self._row_at]
@@ -86,11 +85,11 @@ class Decisions:
         raise AssertionError(f"no such formula is drawn: {formula}")
 
     def _until(self, left: Decided | None, right: Decided, window: rv.Interval) -> Decided:
-        """Of `left U right`; without `left`, of `F right`.
+        """The decision instants of `left U right`; without `left`, of `F right`.
 
-        It is true when at some place of the window `right` is, and `left` at all before it; and
-        false when each place is excluded by the one or the other, those to come by `left` or by the
-        end of the window.
+        The formula is known to be true once `right` is at some position of the window, and `left`
+        at all positions before it. It is known to be false once one of the two excludes each
+        position; positions to come are excluded by `left` or by the end of the window.
         """
         times, count = self.times, len(self.times)
         always = np.full(count, times[0]), np.full(count, NEVER)
@@ -100,13 +99,13 @@ class Decisions:
         end = first
         if window.high is not None:
             end = np.searchsorted(times, times + window.high, "right")
-        else:  # from the first on, the places behind are those of the next one
+        else:  # unbounded: position k depends on k + 1 in the same way, so compute backwards
             later: Decided = np.full(count + 1, NEVER), np.full(count + 1, NEVER)
             for k in range(count - 1, -1, -1):
                 later[0][k] = min(met[k], max(kept[k], later[0][k + 1]))
                 later[1][k] = max(missed[k], min(broken[k], later[1][k + 1]))
         true, false = np.full(count, NEVER), np.full(count, times[0])
-        held, gone = (one.copy() for one in always)  # `left` so far: kept, and broken
+        held, gone = (one.copy() for one in always)  # of `left` up to the offset
         place = np.arange(count)
         for offset in range(int((end - place).max())):
             size = count - offset
@@ -126,7 +125,7 @@ class Decisions:
 
 
 def by_law(case: Case) -> Told:
-    """What the law says of a case."""
+    """The attempts of a case according to the semantics."""
     (asked,) = case.spec.requirements.values()
     decisions = Decisions(case)
     true, false = decisions.of(to_core(asked.consequent))
@@ -144,7 +143,7 @@ def by_law(case: Case) -> Told:
 
 
 def of_report(report: Report) -> Told:
-    """What a report says of its attempts."""
+    """The attempts of a report."""
     return {
         one.number: (one.triggered, *(ended if one.decision is Decision.PREFIX else (None, None)))
         for one in report.attempts
@@ -153,7 +152,7 @@ def of_report(report: Report) -> Told:
 
 
 def _case(seed: int, number: int, samples: int) -> Case:
-    """A random case of one requirement and so many samples."""
+    """A random case with one requirement."""
     rng = random.Random(f"{seed}/{number}")
     formula = scaled(random_mtl(rng, rng.randint(2, 4)), rng.choice(LENGTHS))
     trigger = rng.choice((p, p, start))

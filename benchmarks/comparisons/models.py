@@ -29,7 +29,7 @@ KINDS = (
     "E<> deadlock", "A[] (deadlock imply p)", "A[] (p imply EF q)", "E<> (p and AG q)",
     "A[] (p or AF q)", "E<>[<=T] deadlock",
 )  # fmt: skip
-"""The queries of a random network, in order."""
+"""The kinds of queries of a random network, in their order."""
 
 CTL = (
     *("(EF# ({}))", "(AG# ({}))", "(AF# ({}))", "(EG# ({}))", "(AX ({}))", "(EX ({}))"),
@@ -37,7 +37,7 @@ CTL = (
 )
 LTL = ("F ({})", "G ({})", "F ({})", "G ({})", "({} U {})", "({} W {})", "({} imply {})")
 JOINED = ("not ({})", "({} and {})", "({} or {})", "{}")
-"""Forms of formulas, of either logic and of both."""
+"""Templates of formulas: CTL, LTL, and connectives for both."""
 
 
 def _network(seed: int, number: int) -> Network:
@@ -114,9 +114,9 @@ def _agrees(network: Network, text: str, found: Campaign) -> bool:
 def random_formula(
     random: Random, states: list[str], size: int, forms: Sequence[str], nested: Sequence[str]
 ) -> str:
-    """A formula of one of the forms, with at most so many nested ones, over state formulas.
+    """A random formula of one of the forms over state formulas, with at most `size` operators.
 
-    A sign `#` of a form is a bound, or none.
+    A `#` in a form is replaced by a bound, or by nothing.
     """
     if not size:
         return random.choice(states)

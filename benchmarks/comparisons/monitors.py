@@ -1,4 +1,4 @@
-"""The core against the oracle, the law on arrays, a tableau, and what was lost filled in."""
+"""The core against the oracle and a tableau, and with lost data filled in."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ from rvmon.trace.schema import Kind
 from rvmon.verdicts import Verdict
 
 Figures = Mapping[Key, tuple[float, float, float]]
-"""Of each attempt the least and the greatest that robustness can be, and what is kept up."""
+"""For each attempt the bounds of its robustness, `low` and `high`, and `kept`."""
 
 _MANY, _ALONE = Profile(many=8), Profile(requirements=1)
 _LONG, _USUAL = TraceProfile(long=8), TraceProfile()
 
 TABLEAU_MOST = 8
-"""Formulas with more temporal operators have a tableau that takes too long."""
+"""The most temporal operators of a formula: with more, the tableau takes too long."""
 
 
 def judge_verdicts(
@@ -60,16 +60,16 @@ def judge_verdicts(
     """The core against the oracle: verdicts, instants, records, in all time models.
 
     Args:
-        found: takes what came of it.
-        seed: with a number it tells cases apart.
-        numbers: of specifications.
-        forms: of the core, with commas: `c`, `c rows`, `c+next`, `c+interrupt`, …
-        traces: for each specification.
-        windows: per cent of the specifications that are windows in windows.
-        letters: per cent that speak of 17 propositions at once.
-        online_every: what each call says is compared in every so many-th case.
-        profile: of specifications.
-        trace: of traces.
+        found: gets the results.
+        seed: determines the cases, together with the numbers.
+        numbers: of the specifications.
+        forms: forms of the core, separated by commas: `c`, `c rows`, `c+next`, `c+interrupt`, …
+        traces: number of traces for each specification.
+        windows: percentage of specifications with nested windows.
+        letters: percentage of specifications that read 17 propositions at once.
+        online_every: the result of each call is compared in every n-th case.
+        profile: of the specifications.
+        trace: profile of the traces.
     """
     compiler = Compiler()
     own_found = campaign(
@@ -87,7 +87,7 @@ def judge_verdicts(
 
 
 def by_samples(case: Case) -> Figures:
-    """Robustness by a monitor that is stepped."""
+    """Robustness from a monitor, sample by sample."""
     monitor = RobustnessMonitor(Spec(case.spec)._compiled, sources=case.names)
     last, returned = drive(monitor, case)
     told = (one for several in (*returned, last) for one in several or ())
@@ -114,14 +114,14 @@ def _bounds(one: Robustness) -> tuple[float, float, float]:
 
 
 def _in_columns(case: Case) -> Case:
-    """A case each sample of which says something of all names, as rows do; columns lose nothing."""
+    """The case in columns: each sample updates all names, and there are no outages."""
     content = whole(content_of(random.Random(len(case.actions)), case))
     samples = tuple(Sample(t, cells) for t, cells in content.rows)
     return replace(case, actions=samples, names=frozenset(content.columns), outages=())
 
 
 def _figures_differ(ours: Callable[[Case], Figures], case: Case) -> list[str]:
-    """How the figures of a way depart from the oracle's."""
+    """The differences between the figures of a way and those of the oracle."""
     case = _in_columns(case) if ours is by_arrays else case
     if not case.samples:
         return []
@@ -166,10 +166,10 @@ def judge_fillings(
     fillings: int = 8,
     profile: Profile = _ALONE,
 ) -> None:
-    """Green never hides a failure: what was lost is filled in, and no verdict may turn.
+    """Green never hides a failure: lost data is filled in, and no verdict may change.
 
-    So many fillings are tried for each run. Of every other one stretches of time are lost; every
-    fourth one lost nothing else.
+    `fillings` fillings are tried for each run. In every other run stretches of time are lost; in
+    every fourth run nothing else is lost.
     """
     for number in numbers:
         stretches, alone = number % 2 == 1, number % 4 == 1
@@ -193,8 +193,9 @@ def judge_forecasts(
 ) -> None:
     """Verdicts and forecasts of open attempts against a tableau.
 
-    Each formula is judged on so many words. Timed ones have windows of a few ticks, in held time;
-    the tableau is given them unrolled, and a forecast that the monitor lacks is counted as missed.
+    Each formula is judged on `words` words. Timed formulas have windows of a few ticks, in held
+    time. The tableau gets them unrolled, and a forecast that only the tableau gives is counted as
+    missed.
     """
     for number in numbers:
         rng = random.Random(f"{seed}/{number}")
@@ -228,7 +229,7 @@ _SIGNS = {True: "P", False: "F", None: "either"}
 
 
 def _said(spec: Spec, word: Sequence[Letter]) -> Iterator[tuple[bool, bool | None]]:
-    """After every position whether the attempt is decided, and its verdict or forecast."""
+    """For each position, whether the attempt is decided, and its verdict or forecast."""
     monitor = spec.monitor()
     decided: Verdict | None = None
     for t, letter in enumerate(word):

@@ -1,4 +1,4 @@
-"""Other monitors on random formulas of the common fragment: verdicts, robustness, tick by tick."""
+"""Verdicts and robustness of other monitors on random formulas, tick by tick."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Values = Sequence[float | None]
 
 
 def judge_verdicts(found: Campaign, seed: int, numbers: range) -> None:
-    """Reelay, rtamt, mstlo and SENTIL: verdicts at every tick (made from the package index)."""
+    """Reelay, rtamt, mstlo and SENTIL (from the package index): verdicts at every tick."""
     _judge(found, f"{seed}", [*WAYS], numbers, 50, lambda one: answers(one, ask_oracle), Way.truths)
 
 
@@ -48,7 +48,7 @@ def _judge(
     own: Callable[[Question], Values],
     its: Callable[[Way, Peer, Question], Values],
 ) -> None:
-    """Both on random questions, of whose propositions so many per cent are comparisons."""
+    """Compare both on random questions, with `compared` % of comparisons among propositions."""
     environment = prepare()
     for name in ways:
         way = WAYS[name]
@@ -76,7 +76,7 @@ def _judge(
 
 
 def random_question(rng: random.Random, way: Way, compared: int) -> Question:
-    """A formula, and a trace of values that are held for a while."""
+    """A random formula, and a random trace whose values stay the same for a while."""
     asked = _with_numbers(rng, formula(rng, way.shape, rng.randint(1, 3)), compared)
     ticks = rng.randint(2, 24)
     columns: dict[str, list[bool | float]] = {}
@@ -91,7 +91,7 @@ def random_question(rng: random.Random, way: Way, compared: int) -> Question:
 
 
 def _with_numbers(rng: random.Random, asked: rv.Formula, compared: int) -> rv.Formula:
-    """Some of the propositions replaced by comparisons that no value meets exactly."""
+    """Replace some propositions by comparisons with bounds that no value equals."""
     if isinstance(asked, PLAIN) and chance(rng, compared):
         bound = rv.Literal(rng.randint(-1, 2) + 0.5)
         return rv.Compare(pick(rng, ORDERS), rv.SignalValue(pick(rng, NUMBERS)), bound)
@@ -99,7 +99,7 @@ def _with_numbers(rng: random.Random, asked: rv.Formula, compared: int) -> rv.Fo
 
 
 def _robustness(question: Question) -> Values:
-    """Ours at every tick; `None` where it depends on what comes after the trace, or is infinite."""
+    """Our robustness at every tick; `None` if infinite, or open at the end of the trace."""
     kinds = dict.fromkeys(question.columns, Kind.REAL)
     spec = spec_over(kinds, requirement(question.formula), question.time)
     rows = enumerate(zip(*question.columns.values(), strict=True))

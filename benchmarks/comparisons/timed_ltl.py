@@ -1,7 +1,7 @@
-"""Formulas of LTL on the regions of a small network, by an explicit tableau.
+"""LTL formulas on the regions of a small network, by an explicit tableau.
 
-A node is a region with the set of temporal formulas that are to hold from there; an edge must keep
-what they say of now and next; a component counts if no promise waits in all of it.
+A node is a region with the set of temporal formulas that must hold from there. An edge must respect
+what these formulas require now and next. A component is accepting if no promise waits in all of it.
 
 Source: Clarke, Grumberg, Hamaguchi, Another Look at LTL Model Checking, 1997.
 """
@@ -25,16 +25,16 @@ _Node = tuple[Region, frozenset[ex.PathFormula]]
 
 
 class LinearTruth:
-    """What some run from the start satisfies.
+    """Whether some run from the start satisfies a formula.
 
     Args:
-        network: small.
-        formula: of LTL.
-        progress: whether only runs count on which time passes on for ever.
-        limit: the most nodes.
+        network: a small network.
+        formula: an LTL formula.
+        progress: whether only runs count on which time grows without bound.
+        limit: the maximum number of nodes.
 
     Raises:
-        TooManyRegionsError: there are more.
+        TooManyRegionsError: there are more nodes.
     """
 
     def __init__(
@@ -68,7 +68,7 @@ class LinearTruth:
         return False
 
     def _is_kept(self, promise: ex.PathFormula, node: _Node) -> bool:
-        # Who denies `G p` promises that p will not hold.
+        # A node in which `G p` does not hold promises that p will fail.
         final = promise.op is ex.PathOp.FINALLY
         waits = (promise in node[1]) == final
         return not waits or self._holds(promise.body, node) == final

@@ -1,8 +1,8 @@
-"""How each peer is asked: a class for each, in a process of its own.
+"""Adapters of the peers: one class for each, run in a separate process.
 
-A class says how it judges a formula at every tick (`judge`), and how it passes over rows that are
-laid out as it takes them (`ready`). It runs in an environment of the peers' own, and so imports
-nothing of this package.
+A class judges a formula at every tick (`judge`), and prepares a pass over rows in the format of the
+peer (`ready`). It runs in the separate environment of the peers, and so imports nothing of this
+package.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from typing import Any
 
 Columns = Mapping[str, list[Any]]
 Pass = Callable[[], float | None]
-"""A pass over all rows: the first at which the formula was false."""
+"""A pass over all rows; returns the first at which the formula was false."""
 
 
 class Adapter(ABC):
-    """What is the same for all peers."""
+    """The common part of all adapters."""
 
     package: str
 
     def __init__(self) -> None:
-        logging.disable(logging.WARNING)  # rtamt warns of every variable
+        logging.disable(logging.WARNING)  # rtamt warns about every variable
         self.peer: Any = import_module(self.package)
         self._loaded: tuple[list[str], str, Any] = [], "", None
 
@@ -36,19 +36,19 @@ class Adapter(ABC):
 
     @abstractmethod
     def laid(self, columns: Columns) -> Any:
-        """The rows as this peer takes them."""
+        """The rows in the format of this peer."""
 
     @abstractmethod
     def ready(self, formula: str, kind: str, laid: Any) -> Pass:
-        """A monitor that is to pass over rows."""
+        """Make a monitor, and return a pass of it over the rows."""
 
     def load(self, formulas: list[str], kind: str, columns: Columns) -> dict[str, Any]:
-        """Keep what is to be passed over."""
+        """Store the formulas and the rows of the next passes."""
         self._loaded = formulas, kind, self.laid(columns)
         return {}
 
     def run(self) -> dict[str, Any]:
-        """One pass over the rows for each formula; of the loops alone the time is taken."""
+        """One pass over the rows for each formula; only the loops are timed."""
         formulas, kind, laid = self._loaded
         spent, violated = 0, list[float | None]()
         for formula in formulas:
@@ -65,7 +65,7 @@ def rows_of(columns: Columns, number: Callable[[Any], Any] = lambda cell: cell) 
 
 
 def per_tick(changes: Iterable[Sequence[Any]], ticks: int) -> list[Any]:
-    """Spread changes, each of which holds until the next, over ticks; before them is nothing."""
+    """The value at each tick from changes that hold until the next; `None` before the first."""
     values: list[Any] = [None] * ticks
     for instant, value in changes:
         for tick in range(ticks):
@@ -75,12 +75,12 @@ def per_tick(changes: Iterable[Sequence[Any]], ticks: int) -> list[Any]:
 
 
 class Reelay(Adapter):
-    """reelay's Python package: past formulas; discrete (a position per update) and dense time."""
+    """reelay's Python package: past formulas; discrete (one position per update) and dense time."""
 
     package = "reelay"
 
     def judge(self, formula: str, kind: str, columns: Columns) -> dict[str, Any]:
-        """The verdict, or with `robustness` in the kind that; `dense sparse` gives changes only."""
+        """The verdict, or the robustness if `kind` names it; `dense sparse` passes only changes."""
         model, _, semantics = kind.partition(" ")
         how = {"pattern": formula, "semantics": semantics.replace("sparse", "") or "boolean"}
         rows = rows_of(columns, float) if semantics == "robustness" else rows_of(columns)
@@ -88,8 +88,8 @@ class Reelay(Adapter):
             monitor = self.peer.discrete_timed_monitor(condense=False, **how)
             return {"values": [monitor.update(row)["value"] for row in rows]}
         monitor, changes, ticks = self.peer.dense_timed_monitor(**how), [], len(rows)
-        # Every tick, also without a change: of a longer stretch that starts and ends true, with
-        # false at its beginning, the Python package does not print the changes.
+        # Pass every tick, also without a change: for a longer stretch that starts and ends true,
+        # and is false in between, the Python package does not return the changes.
         for tick, row in enumerate([*rows, rows[-1]]):
             if semantics != "sparse" or row != rows[tick - 1] or tick in (0, ticks):
                 changes += monitor.update({"time": tick, **row})
@@ -113,9 +113,9 @@ class Reelay(Adapter):
 
 
 class Rtamt(Adapter):
-    """rtamt: discrete (a position per sample) and dense time; the robustness's sign is the verdict.
+    """rtamt: discrete (one position per sample) and dense time.
 
-    Online, it answers for an instant that lies its horizon back.
+    The sign of the robustness is the verdict. Online, it answers for the instant one horizon ago.
     """
 
     package = "rtamt"
@@ -224,7 +224,7 @@ class Sentil(Adapter):
     package = "sentil"
 
     def judge(self, formula: str, kind: str, columns: Columns) -> dict[str, Any]:
-        """The robustness at every tick; a window that the trace cuts short counts as it is."""
+        """The robustness at every tick; windows are truncated at the end of the trace."""
         trace = self._trace(columns)
         return {"values": list(self.peer.parse(formula).robustness_signal(trace))}
 
@@ -237,10 +237,10 @@ class Sentil(Adapter):
         return columns
 
     def ready(self, formula: str, kind: str, laid: Columns) -> Pass:
-        """Online; or, if the kind says so, offline: then of violations nothing is said."""
+        """Online, or offline if `kind` says so; offline no violations are returned."""
         if kind.endswith("offline"):
             signal, trace = self.peer.parse(formula).robustness_signal, self._trace(laid)
-            # What the first call makes ready is not measured.
+            # Warm up: initialisation in the first call is not measured.
             signal(self._trace({name: column[:1] for name, column in laid.items()}))
 
             def measured() -> None:

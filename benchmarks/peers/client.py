@@ -1,4 +1,4 @@
-"""Ask a peer that runs in its own process and environment."""
+"""Send requests to a peer that runs in its own process and environment."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ ADAPTERS = WORKER.with_name("adapters.py")
 
 
 class PeerError(Exception):
-    """The peer refused the request or died of it; the text is its own."""
+    """The peer refused the request, or its process ended; the text is that of the peer."""
 
 
 class Peer(AbstractContextManager["Peer"]):
@@ -21,7 +21,7 @@ class Peer(AbstractContextManager["Peer"]):
 
     Args:
         python: the interpreter to run it with.
-        adapter: the class that asks the peer.
+        adapter: the adapter class.
         module: the file of that class.
     """
 

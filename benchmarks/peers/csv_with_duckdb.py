@@ -1,7 +1,7 @@
-"""What fails of `benchmarks.timing.files.SPEC` in a CSV file, by DuckDB: `FILE`; prints instants.
+"""Find the failures of `benchmarks.timing.files.SPEC` in a CSV file with DuckDB; print instants.
 
-Run in the peers' environment. Of the forms that were tried this is the fastest: what no
-requirement looks at is left out before the window is ordered.
+Takes the file as argument, and runs in the peers' environment. Of the queries that were tried this
+is the fastest: rows that no requirement needs are removed before the window is sorted.
 """
 
 import json
@@ -26,7 +26,7 @@ select 'B2', t_ns from answered where stop and (slow is null or slow > t_ns + 50
 
 
 def main(path: str) -> None:
-    """Print the instants at which attempts began that failed."""
+    """Print the trigger instants of failed attempts."""
     print(json.dumps(sorted(duckdb.execute(QUERY, [path]).fetchall())))
 
 

@@ -1,8 +1,9 @@
-"""Formulas of the common fragment in each peer's own language: `dialects.toml`, and one walk.
+"""Translate formulas of the common fragment into each peer's language, using `dialects.toml`.
 
-A translation keeps the truth at every tick: what a peer reads otherwise than SEMANTICS 2 is put to
-it in other words, and what it cannot say is refused. Bounds are in ticks, the peer's unit of time
-is one tick; a proposition is a column of the trace (`spelling`), `true` a column that is always 1.
+A translation keeps the truth at every tick. If a peer reads an operator differently from
+SEMANTICS 2, another formula with the same meaning is used; what the peer cannot express is refused.
+Bounds are in ticks, and the peer's unit of time is one tick. A proposition is a column of the trace
+(`spelling`), `true` a column that is always 1.
 """
 
 from __future__ import annotations
@@ -23,22 +24,22 @@ ALWAYS_ONE = "one"
 
 @dataclass(frozen=True, slots=True)
 class Dialect:
-    """How a peer writes formulas."""
+    """The syntax of formulas of a peer."""
 
     name: str  # of the peer and its time model
-    # by operator its template, `{0}` and `{1}` for operands, `{bound}` for the window
+    # the template of each operator: `{0}` and `{1}` for operands, `{bound}` for the window
     operators: Mapping[rv.UnaryOp | rv.BinaryOp, str]
-    proposition: str = "({} > 0.5)"  # how a Boolean column is read
-    # how a numeric column is compared with a number; empty: it is not
+    proposition: str = "({} > 0.5)"  # for a Boolean column
+    # of a numeric column with a number; empty: not supported
     comparison: str = "({} {} {})"
-    bound: str = "[{}:{}]"  # how the window is written
-    # how no upper bound is written; `None`: only windows from 0 on can be endless
+    bound: str = "[{}:{}]"  # for a window
+    # for a missing upper bound; `None`: only windows from 0 can be unbounded
     endless: str | None = None
-    ever: bool = True  # whether operators without a window can be written
-    point: bool = True  # whether `[0, 0]` can be written
-    split: bool = False  # whether `U` and `S` from above 0 are to be expressed by those from 0 on
-    # whether `U` and `S` from 0 on are written with the right operand or-ed to the left, as the
-    # peer wants the left one also at the instant of the right one
+    ever: bool = True  # whether operators without a window are supported
+    point: bool = True  # whether `[0, 0]` is supported
+    split: bool = False  # whether `U` and `S` from above 0 are expressed by those from 0
+    # whether the right operand of `U` and `S` from 0 is or-ed to the left one, because the peer
+    # requires the left one also at the instant of the right one
     weakened: bool = False
 
 
@@ -46,13 +47,13 @@ def translate(formula: rv.Formula, dialect: str) -> str:
     """The formula as text of a dialect of `dialects.toml`.
 
     Raises:
-        UntranslatableError: the peer cannot say it.
+        UntranslatableError: the peer cannot express it.
     """
     return _say(to_core(formula), DIALECTS[dialect])
 
 
 def spelling(name: str) -> str:
-    """The column of a proposition or number: no word of any peer's language begins like this."""
+    """The column of a proposition or number; no keyword of any peer starts with this prefix."""
     return f"v_{name}"
 
 
@@ -104,7 +105,7 @@ def _operator(formula: rv.Unary | rv.Binary, dialect: Dialect) -> str:
 
 
 def _opened(formula: rv.Unary | rv.Binary, window: rv.Interval) -> rv.Formula:
-    """A window from a on as one from 0 on, a ticks away.
+    """A window that starts at a as one that starts at 0, shifted by a ticks.
 
     `φ U[a,b] ψ` is φ on the first a ticks, then `φ U[0,b-a] ψ`; `S` is the mirror image.
     """
@@ -121,7 +122,7 @@ def _opened(formula: rv.Unary | rv.Binary, window: rv.Interval) -> rv.Formula:
 
 
 def _dialects() -> Iterator[tuple[str, Dialect]]:
-    """Those of `dialects.toml`."""
+    """The dialects of `dialects.toml` by name."""
     tables = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
     own = {one.name for one in fields(Dialect)}
     for key, table in tables.items():

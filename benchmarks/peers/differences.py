@@ -1,6 +1,6 @@
-"""Where peers and the law differ, each with a trace that shows it.
+"""Differences between peers and the semantics, each with a trace that shows it.
 
-Every row is run on both sides; a peer that answers otherwise than written here has changed.
+Every row is run on both sides. If a peer gives another answer than recorded here, it has changed.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ from rvmon import loads
 
 
 class Difference(msgspec.Struct, frozen=True):
-    """One point in which a peer reads a formula or a trace otherwise."""
+    """One point in which a peer reads a formula or a trace differently."""
 
-    # its package, the class that asks it, and what that is told of time and semantics
+    # its package, its adapter class, and the kind of time and semantics for the adapter
     peer: tuple[str, str, str]
     reading: str  # the peer's, in words
     formula: str  # in the peer's language
-    answer: str  # the peer's, tick by tick, of a robustness the sign; or how its error begins
+    answer: str  # the peer's, tick by tick (the sign of a robustness), or the start of its error
     trace: dict[str, list[Cell | str]]
-    same: str  # what looks like the same formula here
-    time: str  # in one of our time models
+    same: str  # the formula of rvmon that looks the same
+    time: str  # the time model of rvmon
 
     def question(self) -> Question:
-        """The formula and the trace, to be asked of us."""
+        """The formula and the trace for rvmon."""
         spec = loads(
             f"time {self.time}\nsignal p, q : bool\nsignal x : real\n"
             f"requirement R\n  upon start then {self.same}\n"

@@ -1,7 +1,7 @@
-"""The peers' own environment, made once beside the benchmarks from the package index.
+"""The environment of the peers, created once beside the benchmarks from the package index.
 
-In it lies reelay's C++ monitor, too, built from the headers of its source package; that needs g++
-and Boost's headers (apt-get install g++ libboost-dev).
+It also contains reelay's C++ monitor, built from the headers of its source package. Building needs
+g++ and Boost's headers (apt-get install g++ libboost-dev).
 """
 
 from __future__ import annotations
@@ -24,21 +24,21 @@ REQUIREMENTS = HERE / "requirements.txt"
 SOURCE = HERE / "reelay_native"
 BINARY = HOME / "reelay_native"
 LETTERS = "pqrs"
-"""The columns that the C++ monitor knows."""
+"""The columns that the C++ monitor supports."""
 
 
 @dataclass(frozen=True, slots=True)
 class Environment:
-    """What was installed."""
+    """The peers that were installed, and those that were not."""
 
-    python: Path  # the interpreter that has the peers
+    python: Path  # the interpreter of the environment
     versions: dict[str, str]  # of each package that installed, by name
     missing: dict[str, str]  # for each package that did not install, the reason in one line
     reelay: Path | None = None  # the C++ monitor; `None`: see `missing`
 
 
 def prepare() -> Environment:
-    """Make the environment if it is not there or the pins have changed; return what it holds."""
+    """Create the environment if it is missing or the pins have changed; return its content."""
     stamp = HOME / "peers.json"
     pins = [line for line in REQUIREMENTS.read_text().splitlines() if line and line[0] != "#"]
     python = HOME / "bin" / "python"
@@ -60,7 +60,7 @@ def prepare() -> Environment:
 
 
 def _install(python: Path, pin: str) -> str:
-    """Why a package does not install; empty if it does."""
+    """Install a package; return the error, or an empty text."""
     command = [str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check", pin]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     errors = [line for line in done.stderr.splitlines() if line.startswith("ERROR")]
@@ -68,7 +68,7 @@ def _install(python: Path, pin: str) -> str:
 
 
 def _build_reelay(python: Path, version: str) -> str:
-    """Build reelay's C++ monitor unless it is there; why that fails."""
+    """Build reelay's C++ monitor if needed; return the error, or an empty text."""
     source = SOURCE / "monitor.cpp"
     if BINARY.exists() and BINARY.stat().st_mtime > source.stat().st_mtime:
         return ""
@@ -87,12 +87,12 @@ def _build_reelay(python: Path, version: str) -> str:
         command += ["-I", str(SOURCE), "-I", str(include), str(source), "-o", str(BINARY)]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
     errors = [line for line in done.stderr.splitlines() if "error" in line] or ["g++ failed"]
-    # Without the place where it was unpacked.
+    # Drop the path of the temporary folder.
     return errors[0].rpartition("fatal error: ")[2] if done.returncode else ""
 
 
 def packed(columns: Mapping[str, Sequence[bool | float]]) -> bytes:
-    """Rows for the C++ monitor, a byte for each: bit i is the column of `LETTERS[i]`."""
+    """Rows for the C++ monitor, one byte each: bit i is the column of `LETTERS[i]`."""
     bits = [np.array(one, np.uint8) << LETTERS.index(name) for name, one in columns.items()]
     found: bytes = np.bitwise_or.reduce(bits).tobytes()
     return found

@@ -1,4 +1,4 @@
-"""Ours, asked as the peers are: specifications as text, through the public interface."""
+"""rvmon as a contender: specifications as text, through the public interface."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Columns = Mapping[str, list[Any]]
 
 
 class Rvmon:
-    """Answers requests by rvmon's monitors."""
+    """Answers requests with rvmon's monitors."""
 
     def __init__(self) -> None:
         self._spec: Any = None
@@ -23,13 +23,13 @@ class Rvmon:
     def load(
         self, spec: str, kind: str, columns: Columns, rows: int, period: int
     ) -> dict[str, Any]:
-        """Compile the specification and lay the rows out.
+        """Compile the specification and prepare the rows.
 
         Args:
-            spec: the text; its requirements are answered for in order.
-            kind: `step` (every row whole), `changes` (what changed) or `evaluate` (columns); of
-                robustness `stream`, `attempt` or `offline` (columns).
-            columns: by name the value at each row.
+            spec: the text; answers are in the order of its requirements.
+            kind: `step` (every row complete), `changes` (only changed values) or `evaluate`
+                (columns); for robustness `stream`, `attempt` or `offline` (columns).
+            columns: the values of each name, one per row.
             rows: their number.
             period: ticks from row to row.
         """
@@ -57,7 +57,7 @@ class Rvmon:
         return {}
 
     def run(self) -> dict[str, Any]:
-        """One pass over the rows; the first row at which each requirement had failed."""
+        """One pass over the rows; returns the first row at which each requirement had failed."""
         passed = self._ready()
         began = time.process_time_ns()
         attempts = passed()
@@ -71,7 +71,7 @@ class Rvmon:
         return {"cpu_ns": spent, "violated": list(firsts.values())}
 
     def _ready(self) -> Callable[[], Iterable[Any]]:
-        """What passes over the rows and gives attempts; of robustness none, but it is there."""
+        """A function that passes over the rows and returns attempts (none for robustness)."""
         spec, laid, kind = self._spec, self._laid, self._kind
         if kind == "evaluate":
             return lambda: spec.evaluate(laid, time="t_ns").attempts
@@ -83,7 +83,7 @@ class Rvmon:
             def measured() -> Iterable[Any]:
                 for t, row in laid:
                     for one in measure(t, row):
-                        _ = one.robustness.low  # made when it is read
+                        _ = one.robustness.low  # the figure is created when it is read
                 return ()
 
             return measured

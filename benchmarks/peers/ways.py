@@ -1,4 +1,4 @@
-"""The ways in which peers can be asked for the truth of a formula at every tick, and ours."""
+"""Ways to get the truth of a formula at every tick, from peers and from rvmon."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Cell = bool | float | None
 """A value at a tick; `None`: not known."""
 
 Columns = Mapping[str, Sequence[Cell]]
-"""The value of each name at each tick, from tick 0 on."""
+"""The values of each name, one per tick from tick 0 on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +33,7 @@ class Question:
 
     formula: Formula  # over the names of the columns
     columns: Columns  # all of one length
-    # `held` or `sampled`; the same here, as there is a sample at every tick
+    # `held` or `sampled`; equivalent here, because there is a sample at every tick
     time: TimeModel = TimeModel.HELD
 
     @property
@@ -46,25 +46,25 @@ class Way:
     """One way to ask one peer."""
 
     package: str  # its name in the package index
-    adapter: str  # the class that asks it
-    kind: str  # what the adapter is given of time and semantics
-    dialect: str  # the language
-    time: TimeModel  # the time model of ours that it stands for
-    shape: Shape  # what random formulas hold that it is asked
-    sign: bool = False  # whether it answers with a robustness, whose sign counts; 0 says nothing
+    adapter: str  # the adapter class
+    kind: str  # time and semantics, for the adapter
+    dialect: str  # the language of formulas
+    time: TimeModel  # the equivalent time model of rvmon
+    shape: Shape  # the operators of random formulas for this peer
+    sign: bool = False  # whether it answers with a robustness, whose sign is the verdict; 0 is none
 
     def says(self, peer: Peer, question: Question) -> list[float | None]:
-        """What the peer says at every tick.
+        """The answer of the peer at every tick.
 
         Raises:
-            PeerError: it refuses, or dies.
-            UntranslatableError: it cannot be asked this.
+            PeerError: the peer refuses, or its process ends.
+            UntranslatableError: its language cannot express the formula.
         """
         text = translate(question.formula, self.dialect)
         ticks = question.ticks
         named = {spelling(name): list(column) for name, column in question.columns.items()}
         named[spelling("start")] = [tick == 0 for tick in range(ticks)]
-        # Of a robustness, what is true is far from false.
+        # For a robustness, `true` must be far from false.
         named[spelling(ALWAYS_ONE)] = [1e300 if self.sign else True] * ticks
         used = {name: column for name, column in named.items() if name in text}
         found: list[float | None]
@@ -96,12 +96,12 @@ WAYS = {
 }
 
 RTAMT_STEPPED = Way(*_RTAMT, "discrete online", "RTAMT_DISCRETE", _SAMPLED, _PAST_STEP, True)
-"""Row by row, as it is timed. Random formulas are not put to it: what stands twice in one it steps
-twice a row."""
+"""rtamt row by row, as it is timed. It is not used for random formulas, because it steps a
+subformula that occurs twice twice per row."""
 
 
 Judge = Callable[[CheckedSpec, Sequence[Sample], int], Report]
-"""Judges a spec on samples, with an `advance` to the given tick at the end."""
+"""Judges a specification on samples, with an `advance` to the given tick at the end."""
 
 
 def ask_oracle(spec: CheckedSpec, samples: Sequence[Sample], end: int) -> Report:
@@ -117,7 +117,7 @@ def ask_monitor(spec: CheckedSpec, samples: Sequence[Sample], end: int) -> Repor
 
 
 def answers(question: Question, judge: Judge) -> list[bool | None]:
-    """Ours at every tick, an attempt for each: TRUE, FALSE, or `None` (the trace decides not)."""
+    """Our verdict at every tick, one attempt each; `None` if the trace does not decide it."""
     kinds: dict[str, Kind | None] = {
         name: Kind.REAL if float in map(type, column) else Kind.BOOL
         for name, column in question.columns.items()

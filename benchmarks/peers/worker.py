@@ -1,10 +1,10 @@
-"""A peer in a process of its own: one JSON request per line in, one JSON answer per line out.
+"""Run a peer in a separate process: one JSON request per line in, one JSON answer per line out.
 
     python worker.py MODULE.py CLASS
 
-It imports nothing of this package, as it may run in an environment of the peer's own. A request
-names a method of the class and its arguments; an error of the peer is an answer, too:
-{"error": …}. What the peer prints goes to stderr.
+It imports nothing of this package, because it may run in the environment of the peer. A request
+names a method of the class and its arguments. An error of the peer is an answer, too:
+{"error": …}. Output of the peer goes to stderr.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from typing import Any
 def main(path: str, name: str) -> None:
     answers = os.fdopen(os.dup(1), "w", buffering=1)
     os.dup2(2, 1)
-    sys.path.pop(0)  # this folder: its names are not meant for the peers
+    sys.path.pop(0)  # this folder: peers must not import its modules
     peer = runpy.run_path(path)[name]()
     for line in sys.stdin:
         request: dict[str, Any] = json.loads(line)

@@ -1,9 +1,9 @@
-"""Whether two sides judge alike, before their times are set side by side.
+"""Check that two sides give the same verdicts, before their times are compared.
 
-The first formula of a workload is judged at every row of its last rows, where the Timescales
-families are violated, and with each column held for half of them: ours by the monitor that is
-measured, the peer by its own, on as many rows as it judges in a given time. On random formulas and
-traces they are compared by `benchmarks.differential peers`.
+The first formula of a workload is judged at each of the last rows, where the Timescales families
+are violated, and again with each column held for half of them. rvmon uses the monitor that is
+timed. Each peer gets as many rows as it judges in a given time. `benchmarks.differential peers`
+compares both on random formulas and traces.
 """
 
 from __future__ import annotations
@@ -25,33 +25,33 @@ from rvmon.testing.law.syntax import intervals
 
 MOST_ROWS = 4000
 MEASURED_ROWS = 2_000
-"""Of which all figures of robustness are compared."""
+"""The number of rows on which all figures of robustness are compared."""
 
 
 @dataclass(frozen=True, slots=True)
 class Agreement:
-    """Rows at which both sides had a verdict."""
+    """The comparison of one peer on one workload, at rows where both sides had a verdict."""
 
     label: str  # the peer
-    name: str  # of the workload
-    form: str  # of the workload
-    equal: int = 0  # so many were the same
-    compared: int = 0  # of so many
-    false: int = 0  # of these, ours said FALSE at so many
+    name: str  # workload
+    form: str  # form of its formulas
+    equal: int = 0  # equal verdicts
+    compared: int = 0  # compared verdicts
+    false: int = 0  # compared verdicts at which rvmon said FALSE
     remark: str = ""  # why nothing was compared
 
 
 def by_peer(label: str) -> str:
-    """The label of the peer, of one of the ways in which it is timed."""
+    """The label of the peer, from the label of one of its timed ways."""
     return label.split()[0].rstrip(",")
 
 
 def compare(
     workload: Workload, timed: Sequence[Figure], racing: Sequence[Contender], seconds: float
 ) -> Iterator[Agreement]:
-    """Compare ours on the workload's first formula with each peer that was timed.
+    """Compare rvmon with each timed peer on the workload's first formula.
 
-    Each gets as many of the rows as it judges in so many seconds.
+    Each peer gets as many rows as it judges in `seconds`.
     """
     formula = workload.formulas[0]
     bound = max((max(i.low, i.high or 0) for i in intervals(formula)), default=0)
@@ -80,7 +80,7 @@ def compare(
 
 
 def _with_stretches(columns: Columns) -> Iterator[Columns]:
-    """The columns, and with each in turn held for the second half, so that both verdicts occur."""
+    """The columns, then variants with one column held in the second half, to get both verdicts."""
     yield columns
     for name, column in columns.items():
         half = len(column) // 2
@@ -88,9 +88,9 @@ def _with_stretches(columns: Columns) -> Iterator[Columns]:
 
 
 def margins_alike(workload: Workload, sentil: Theirs) -> Agreement:
-    """Whether SENTIL's figures are ours: by arrays, a sample at a time, and as it is required.
+    """Compare SENTIL's figures with ours: by arrays, per sample, and for one attempt.
 
-    It counts a window that the trace cuts short as it is; ours is then no single number.
+    Rows near the end are left out: SENTIL truncates windows there, and our figure is an interval.
     """
     columns = {name: list(column[:MEASURED_ROWS]) for name, column in workload.columns.items()}
     theirs = sentil.way.says(sentil.peer, Question(workload.formulas[0], columns))

@@ -1,4 +1,4 @@
-"""A hard stream beside its quiet neighbour: how many times as much does a sample cost?"""
+"""The ratio of the cost of a sample in a hard stream to that in a comparable easy one."""
 
 from __future__ import annotations
 
@@ -39,13 +39,13 @@ class Stream:
     period: int  # ticks from one to the next
 
     def cost(self, count: int) -> float:
-        """CPU nanoseconds of a sample, `step` and what it hands out, of the last so many."""
+        """CPU nanoseconds per sample and its records, over the last `count` samples."""
         step, period = loads(self.text).monitor(keep=100).step_ns, self.period
         before = len(self.rows) - count
         for place, row in enumerate(self.rows[:before]):
             step(place * period, row)
         measured = self.rows[before:]
-        gc.freeze()  # what a collection costs is what the stream leaves, not what the process holds
+        gc.freeze()  # collections then visit only what the stream allocates
         began = time.process_time_ns()
         for place, row in enumerate(measured, before):
             step(place * period, row)
@@ -55,7 +55,7 @@ class Stream:
 
 
 def drawn(count: int, unknown: float = 0, events: float = 0) -> list[Row]:
-    """Samples of which all values are new; shares of NaN and of samples with the event."""
+    """Samples with new values, with shares of NaN and of samples with the event."""
     rng = random.Random("drawn")
     rows: list[Row] = []
     for _ in range(count):
@@ -79,7 +79,7 @@ def _open(count: int, attempts: int) -> Sequence[Row]:
 
 
 def _pulses(count: int, high: float) -> list[Row]:
-    """Triggers; x pulses, and pauses for as long; y rises for 3 of 1,900 samples."""
+    """Triggers; x pulses and pauses alternately, y is high for 3 of 1,900 samples."""
     return [
         {"x": high * (n // 3000 % 2 == 0 and n % 2), "y": 10.0 * (n % 1900 < 3), "e": True}
         for n in range(count)
@@ -87,12 +87,12 @@ def _pulses(count: int, high: float) -> list[Row]:
 
 
 def _counted(count: int) -> list[Row]:
-    """Samples whose sums and counts are known."""
+    """Samples with a regular pattern, for sums and counts."""
     return [{"a": n % 2 == 0, "x": float(n % 7), "e": n % 3 == 0} for n in range(count)]
 
 
 def cells(count: int) -> Iterator[tuple[str, Stream, str, Stream, float]]:
-    """What is hard, its quiet neighbour, and the most times that it may cost."""
+    """Name and stream of the hard and of the easy case, and the highest allowed ratio."""
     every, plain, some = (drawn(count, events=share) for share in (1, 0, 0.05))
     nan, rare = drawn(count, unknown=0.01), drawn(count, events=0.02)
     pulses, still = _pulses(count, 10), _pulses(count, 0)
@@ -123,7 +123,7 @@ def cells(count: int) -> Iterator[tuple[str, Stream, str, Stream, float]]:
 
 
 def lines(count: int, repeats: int) -> Iterator[str]:
-    """The table: medians of passes in turn."""
+    """The table, with medians of alternating passes."""
     head = ("stream", "CPU per sample", "neighbour", "CPU per sample", "ratio", "wanted", "met")
     return table(head, _rows(count, repeats))
 

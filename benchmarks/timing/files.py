@@ -1,4 +1,4 @@
-"""What files cost from the file to the verdict: whole processes, ours and others'."""
+"""The cost from the file to the verdict: whole processes of rvmon and of others."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ RVMON = (sys.executable, "-m", "rvmon", "run")
 JSON = ("--format", "json")
 PERIOD = 10_000_000
 EACH = 10_000
-"""Rows of each of many files."""
+"""The number of rows of each of many files."""
 
 SMALL = 2_000
-"""Files of 50 rows."""
+"""The number of files of 50 rows."""
 
 SPEC = """spec files
 signal speed, obstacle : real
@@ -48,26 +48,26 @@ cross both = fast, near
 
 
 Failures = list[list[tuple[str, int]]]
-"""By report the attempts that failed: requirement, and when it began."""
+"""The failed attempts of each report: requirement and instant."""
 
 
 @dataclass(slots=True)
 class Task:
     """A way to judge some files."""
 
-    what: str  # is judged
-    who: str  # judges
-    command: Sequence[str]  # exits 0 or 1
-    read: Callable[[str], Failures]  # what was found, from what it prints
+    what: str  # the files that are judged
+    who: str  # the program that judges them
+    command: Sequence[str]  # must exit with 0 or 1
+    read: Callable[[str], Failures]  # the failures from its output
     refusal: str = ""  # why it was not measured
-    costs: list[Cost] = field(default_factory=list)  # of the passes that count
+    costs: list[Cost] = field(default_factory=list)  # without the first pass
     found: Failures = field(default_factory=list)  # in the last pass
 
 
 def measure(tasks: Sequence[Task], repeats: int, folder: Path) -> None:
-    """So many passes of all tasks in turn, behind a first one that fills caches if several.
+    """Measure `repeats` passes of all tasks; several follow a first one that fills caches.
 
-    Python keeps in the folder what it has compiled, as an installed package is.
+    Compiled Python code is kept in the folder, as for an installed package.
     """
     kept = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     environment = {**kept, "PYTHONPYCACHEPREFIX": str(folder / "compiled")}
@@ -85,7 +85,7 @@ def measure(tasks: Sequence[Task], repeats: int, folder: Path) -> None:
 
 
 def _of_formulas(size: Size, environment: Environment, folder: Path) -> Iterator[Task]:
-    """Families of formulas beside reelay's C++, of which the first violated row counts."""
+    """Families of formulas, compared with reelay's C++ by the first violated row."""
     asked = families("process", (("AbsentAQ", 10), ("RespondGLB", 1000)), size.columns)
     for number, workload in enumerate(asked):
         own = folder / f"family{number}"
@@ -135,7 +135,7 @@ def _failures(printed: str, instant: str = "triggered") -> Failures:
 
 
 def lines(size: Size, environment: Environment) -> Iterator[str]:
-    """What a robot's files take, by what they are and who judges them: a table."""
+    """The table of costs of a robot's files, by files and program."""
     with tempfile.TemporaryDirectory() as name:
         folder, rows = Path(name), list[Sequence[str]]()
         tasks = [*_tasks(size, environment, folder)]
@@ -182,7 +182,7 @@ def _tasks(size: Size, environment: Environment, folder: Path) -> Iterator[Task]
 
 
 def _odd(plain: Path) -> Mapping[str, Path]:
-    """The same recording as other programs write it, by what is odd about it."""
+    """Variants of a recording as other programs write it, by their peculiarity."""
     text = plain.read_bytes()
     written = {
         "packed": ("packed.csv.gz", gzip.compress(text, 1)),
@@ -195,11 +195,11 @@ def _odd(plain: Path) -> Mapping[str, Path]:
 
 
 def written(path: Path, rows: int, seed: int) -> Path:
-    """A recording of a base whose values change at every row and that now and then disobeys."""
+    """Write a recording of a base whose values change at every row, with occasional failures."""
     rng = random.Random(seed)
     speeds = [f"{0.3 + rng.random():.3f}" for _ in range(997)]
     distances = [f"{0.6 + 10 * rng.random():.2f}" for _ in range(1009)]
-    slow, late = -1, rows - 100  # no stop is open at the end
+    slow, late = -1, rows - 100  # no stop request is open at the end
     with path.open("w") as file:
         file.write("t_ns,speed,obstacle,stop\n")
         for row in range(rows):
@@ -217,7 +217,7 @@ def _told(printed: str) -> Failures:
 
 
 def _cells(task: Task, first: Task) -> Sequence[str]:
-    """A row of the table; a ratio only where the failures are those of the first."""
+    """A row of the table; a ratio is given only if the failures are those of the first task."""
     wall, cpu = [one.seconds for one in task.costs], [one.cpu for one in task.costs]
     alike = task.found == first.found
     ratio = statistics.median(one.seconds for one in first.costs) / statistics.median(wall)

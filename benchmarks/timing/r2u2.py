@@ -1,8 +1,8 @@
 """R2U2's C monitor, built from a clone of its repository for the formulas of each workload.
 
-C2PO compiles the formulas as it does by itself, and R2U2's C gets the sizes that C2PO writes, and
--O3. Its loop goes over bytes in memory. R2U2 says that a formula is false at the last row of its
-window, ours when it is over, one row later.
+C2PO compiles the formulas with its defaults, and R2U2's C is compiled with the sizes that C2PO
+writes, and -O3. A loop passes over bytes in memory. R2U2 reports that a formula is false at the
+last row of its window, rvmon when the window is over, one row later.
 """
 
 from __future__ import annotations
@@ -27,22 +27,22 @@ LOOP = Path(__file__).parents[1] / "peers" / "r2u2_native" / "loop.c"
 
 @dataclass
 class R2u2(Contender):
-    """A contender; what is built for one workload serves until there is another."""
+    """R2U2 as a contender; it is built for one workload at a time."""
 
     source: Path  # the clone
     label: str = "R2U2 C, memory"
-    folder: Path = field(default_factory=lambda: Path(tempfile.mkdtemp()))  # for what is built
+    folder: Path = field(default_factory=lambda: Path(tempfile.mkdtemp()))  # for build products
     built_for: str = ""  # the name of the workload
-    names: Sequence[str] = ()  # of its columns
+    names: Sequence[str] = ()  # the names of the columns
     sizes: tuple[str, ...] = ()
     is_asked = True
 
     def prepare(self, workload: Workload, rows: int) -> None:
-        """Build it unless that is done, and write the rows.
+        """Build the monitor for the workload if needed, and write the rows.
 
         Raises:
-            UntranslatableError: it cannot say a formula.
-            PeerError: it cannot be built.
+            UntranslatableError: its language cannot express a formula.
+            PeerError: the build fails.
         """
         if workload.form != "future":
             raise UntranslatableError("only future forms are measured")
@@ -75,7 +75,7 @@ class R2u2(Contender):
         for line in _run(self.folder / "r2u2", self.folder / "spec.bin", path).splitlines():
             number, _, said = line.partition(":")
             row, _, truth = said.partition(",")
-            if number == "0":  # of rows that are alike the last one is printed
+            if number == "0":  # for equal consecutive verdicts only the last row is printed
                 found += [truth == "T"] * (int(row) + 1 - len(found))
         return found + [None] * (question.ticks - len(found))
 
@@ -92,7 +92,7 @@ class R2u2(Contender):
             *(sys.executable, self.source / "compiler" / "c2po.py", "--quiet", "--spec", text),
             *("--map", mapping, "--output", self.folder / "spec.bin", "--write-bounds", bounds),
         )
-        # C2PO counts the signals that are read; all are loaded, and of nothing there is one.
+        # C2PO counts only the signals that are read, but all are loaded; and sizes must not be 0.
         tight = re.compile(r"(?<=R2U2_MAX_)(SIGNALS|ATOMICS|BZ_INSTRUCTIONS) \d+")
         bounds.write_text(tight.sub(rf"\1 {len(names)}", bounds.read_text()))
         code = self.source / "monitors" / "c" / "src"

@@ -1,4 +1,4 @@
-"""Contenders pass over workloads in turn, so that what the machine does meets all alike."""
+"""Time contenders in alternating passes, so that slow phases of the machine affect all alike."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ from tests.tools.common_fragment import UntranslatableError
 from rvmon.language.print import format_formula
 
 FEWEST_ROWS = 50
-"""Of a pass, however slow the contender; as many tell how slow it is."""
+"""The minimum number of rows of a pass, also for a first estimate of the speed."""
 
 SLOW = 10
-"""Who needs so many times the time of a pass passes twice only."""
+"""A contender whose pass takes this many times the planned time makes only two passes."""
 
 LONGER = {"batch": 10, "many": 5}
-"""So many times as long is a pass, of what is judged as a whole or takes long to begin."""
+"""Factors for the length of passes in sections with batch evaluation or a slow start."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pass:
-    """One pass over a workload: CPU ns, and per formula the first row at which it was violated."""
+    """One pass over a workload: CPU ns, and the first violated row of each formula."""
 
     cpu_ns: int
     violated: tuple[int | None, ...]
@@ -43,13 +43,13 @@ class Pass:
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """What one contender needed for one workload."""
+    """The cost of one workload for one contender."""
 
     label: str  # the contender
-    rows: int  # of each pass
+    rows: int  # per pass
     median: float  # CPU ns per row
-    least: float  # of the passes
-    most: float  # of the passes
+    least: float  # of all passes
+    most: float  # of all passes
     violated: tuple[int | None, ...]  # the first violated row of each formula
 
 
@@ -63,30 +63,30 @@ class Result:
     rows: int  # of the whole trace
     changing: float  # the share of rows at which something changes
     figures: tuple[Figure, ...]  # of the contenders that took part
-    refusals: tuple[tuple[str, str], ...] = ()  # of the others, the reason by label
+    refusals: tuple[tuple[str, str], ...] = ()  # label and reason of the others
 
 
 class Contender(ABC):
-    """Someone who can be given a workload and passes over it again and again."""
+    """A program that can pass over a workload repeatedly."""
 
     label: str
-    is_asked = False  # whether it says its verdicts, too
+    is_asked = False  # whether `truths` is available
 
     @abstractmethod
     def prepare(self, workload: Workload, rows: int) -> None:
-        """Take the first so many rows; raise `UntranslatableError` if that cannot be done."""
+        """Load the first rows; raise `UntranslatableError` if a formula cannot be expressed."""
 
     @abstractmethod
     def run(self) -> Pass:
         """One pass."""
 
     def truths(self, question: Question) -> Sequence[bool | None]:
-        """The verdict at each row, if it is asked."""
+        """The verdict at each row, if `is_asked`."""
         raise NotImplementedError
 
 
 class Worker(Contender):
-    """In a process of its own, which holds the rows and measures itself."""
+    """A contender in a separate process, which holds the rows and measures its own time."""
 
     peer: Peer
 
@@ -120,7 +120,7 @@ class Ours(Worker):
 
 
 def margin_text(workload: Workload) -> str:
-    """A formula as it is required from the first sample on, a tick between two samples."""
+    """A specification that requires the formula from the first sample on, in sampled time."""
     required = f"upon start\n  then {format_formula(workload.formulas[0])}"
     return specification([required], workload.columns).replace("time held", "time sampled")
 
@@ -130,11 +130,11 @@ class Theirs(Worker):
     """A peer."""
 
     peer: Peer
-    label: str  # as it stands in the tables
+    label: str  # in the tables
     way: Way  # how it is asked
     form: str = ""  # the only form of formulas that is measured; empty: both
-    required: str = "{}"  # how a formula is demanded at every row
-    # with more formulas, passing over a few rows, or making the monitors, takes too long
+    required: str = "{}"  # template that requires a formula at every row
+    # maximum number of formulas: with more, even a few rows, or making monitors, take too long
     most: int = 1_000
     is_asked = True
 
@@ -154,7 +154,7 @@ class Theirs(Worker):
 
 
 def passed(command: Sequence[str | Path], later: int = 0) -> Pass:
-    """One pass of a program that measures its loop alone; it tells rows so much later than ours."""
+    """One pass of a program that times its own loop; `later` is added to the rows it reports."""
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     spent, *violated = map(int, done.stdout.split())
     return Pass(spent, tuple(None if row < 0 else row + later for row in violated))
@@ -162,14 +162,14 @@ def passed(command: Sequence[str | Path], later: int = 0) -> Pass:
 
 @dataclass
 class NativeReelay(Contender):
-    """reelay's C++ monitor over bytes in memory, a process for each pass."""
+    """reelay's C++ monitor over bytes in memory, one process per pass."""
 
     binary: Path
     label: str = "reelay C++"
     patterns: list[str] = field(default_factory=list)
 
     def prepare(self, workload: Workload, rows: int) -> None:
-        """Write the rows to a file, from which each pass reads them first."""
+        """Write the rows to a file, which each pass reads before it starts."""
         if not set(workload.columns) <= set(LETTERS):
             raise UntranslatableError("its harness knows the columns p, q, r, s")
         columns = {name: one[:rows] for name, one in workload.columns.items()}
@@ -189,7 +189,7 @@ PEERS: Sequence[tuple[Any, ...]] = (
     ("sentil", _SENTIL, "", "always[0, inf]({})"),
 )
 MEASURED = (("sentil", _SENTIL), ("sentil offline", replace(_SENTIL, kind="discrete offline")))
-"""Of robustness."""
+"""The peers of the section on robustness."""
 
 OURS = {
     "batch": {"rvmon evaluate": "evaluate"},
@@ -199,13 +199,13 @@ OURS = {
         "rvmon offline": "offline",
     },
 }
-"""By section; robustness of each sample, of what is required from the first on, of columns."""
+"""Our ways by section: label and kind, see `ours.py`."""
 
 STEPPED = {"rvmon step": "step", "rvmon step, changes": "changes"}
 
 
 def contenders(environment: Environment, section: str) -> Iterator[Contender]:
-    """All that take part in a section, ours first: with columns in memory, or row by row."""
+    """The contenders of a section, ours first."""
     own = ADAPTERS.with_name("ours.py")
     for label, kind in OURS.get(section, STEPPED).items():
         yield Ours(Peer(Path(sys.executable), "Rvmon", own), label, kind)
@@ -219,9 +219,9 @@ def contenders(environment: Environment, section: str) -> Iterator[Contender]:
 def measure(
     workload: Workload, contenders: Sequence[Contender], repeats: int, seconds: float
 ) -> Result:
-    """Give the workload to all contenders and let them pass over it in turn; they stay open.
+    """Let all contenders pass over the workload in turn; they stay open.
 
-    None passes longer than so many seconds: slow ones get fewer rows.
+    A pass takes about `seconds`: slow contenders get fewer rows.
     """
     seconds *= LONGER.get(workload.section, 1)
     refusals: dict[str, str] = {}
@@ -252,14 +252,14 @@ def measure(
 
 
 def _prepare(contender: Contender, workload: Workload, seconds: float) -> int:
-    """Find by passes that grow how many rows fit into the time, and load them."""
+    """Find by growing passes how many rows fit into the time, and load them."""
     budget = seconds * 1e9
     rows = min(FEWEST_ROWS, workload.rows)
     while True:
         contender.prepare(workload, rows)
         spent = max(contender.run().cpu_ns, 1)
         fitting = min(max(int(rows * budget / spent), FEWEST_ROWS), workload.rows)
-        if fitting <= rows or spent >= budget / 2:  # what each pass costs once weighs little
+        if fitting <= rows or spent >= budget / 2:  # its fixed cost matters little
             break
         rows = min(10 * rows, fitting)
     if fitting != rows:

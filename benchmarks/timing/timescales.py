@@ -1,9 +1,9 @@
 """The Timescales families: bounded absence, universality, recurrence and response in scopes.
 
-Ten properties, each in a past and a future form with a bound that scales, and traces on which they
-hold at every row until a violation near the end. The generator is our own, made from the published
-definitions (`timescales.toml`); times are rows, one tick apart. Universality is the absence of the
-contrary, on traces with the contrary.
+Ten properties, each in a past and a future form with a scalable bound, and traces on which they
+hold at every row until a violation near the end. The generator is our own, based on the published
+definitions (`timescales.toml`). Times are rows, one tick apart. Universality is the absence of the
+negation, on negated traces.
 
 Source: D. Ulus, Timescales: a benchmark generator for MTL monitoring tools, RV 2019; properties and
 traces of its public suite. There the deadline of the past response is `not s since[:b] p`, which no
@@ -24,7 +24,7 @@ from msgspec import structs
 BOUNDS = (10, 100, 1000)
 
 Rows = Sequence[str | list[str]]
-"""As `timescales.toml` tells them."""
+"""Rows in the notation of `timescales.toml`."""
 
 _WORDS = {
     "BETWEEN": "(r and not q and once q)",  # the scope between q and r has just ended
@@ -42,10 +42,10 @@ class Family(msgspec.Struct, frozen=True):
     future: str
     episode: Rows
     violation: Rows
-    is_contrary: bool = False  # whether of p the contrary is told
+    is_contrary: bool = False  # whether p is negated in traces
 
     def text(self, form: str, high: int) -> str:
-        """The form that is named, for an upper bound."""
+        """The formula of a form, `past` or `future`, for an upper bound."""
         found: str = getattr(self, form)
         bounds = {"LOW": f"{_low_bound(high)} ns", "HIGH": f"{high} ns"}
         for word, meaning in {**_WORDS, **bounds}.items():
@@ -58,7 +58,7 @@ def _low_bound(high: int) -> int:
 
 
 def _parts(rng: random.Random, rows: Rows, high: int) -> Iterator[tuple[str, int]]:
-    """What is true, and at how many rows."""
+    """The true columns, and the number of rows for which they are true."""
     known = {"low": _low_bound(high), "high": high}
     known |= {f"high{more:+d}": high + more for more in (-2, -1, 1)}
 
@@ -76,7 +76,7 @@ def _parts(rng: random.Random, rows: Rows, high: int) -> Iterator[tuple[str, int
 
 
 def trace(family: Family, high: int, rows: int, seed: int = 1) -> dict[str, list[bool]]:
-    """A trace that fulfils the past form at every row but the last, at least so many rows long."""
+    """A trace of about `rows` rows that satisfies the past form at every row but the last."""
     rng = random.Random(f"{family.name}/{high}/{seed}")
     columns: dict[str, list[bool]] = {name: [] for name in family.names}
 

@@ -1,4 +1,4 @@
-"""What is measured: formulas over a trace of rows, by section; and how a user would write them."""
+"""The workloads: formulas over a trace of rows, by section, and their specifications."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ SECOND = 1_000_000_000
 
 @dataclass(frozen=True, slots=True)
 class Workload:
-    """Formulas to hold at every row, and the rows."""
+    """Formulas that should hold at every row, and the rows."""
 
     section: str  # the table it belongs to
     name: str  # the line of that table
-    form: str  # `past` or `future`: what the formulas speak of
+    form: str  # `past` or `future`: the tense of the formulas
     formulas: tuple[Formula, ...]  # with bounds in rows
-    columns: Mapping[str, Column]  # by name the value at each row
+    columns: Mapping[str, Column]  # the values of each name, one per row
     period: int = 1  # ticks from row to row
 
     @property
@@ -47,27 +47,27 @@ class Workload:
 
 @dataclass(frozen=True, slots=True)
 class Size:
-    """How much is measured."""
+    """The amount of measuring."""
 
-    rows: int = 50_000  # of the traces that are judged row by row
-    # rows of what is judged in memory or by whole processes; and a tenth of them
+    rows: int = 50_000  # of traces judged row by row
+    # rows judged in memory or by whole processes; a tenth of them is measured as well
     columns: int = 1_000_000
-    longest: int = 300_000  # rows of the traces on which deadlines grow
+    longest: int = 300_000  # rows of traces for growing deadlines
     bounds: tuple[int, ...] = timescales.BOUNDS  # of the Timescales families
     counts: tuple[int, ...] = (10, 100, 1000)  # of monitors on one stream
-    step_seconds: float = 30  # that a peer may step on one workload to be compared
+    step_seconds: float = 30  # time in which a peer may judge one workload for comparison
     repeats: int = 5  # passes of each contender
-    processes: int = 3  # of each program, beside a first one that does not count
+    processes: int = 3  # measured runs of each program, after a first one that does not count
     file_rows: int = 10_000_000  # of one large file
-    files: int = 1_000  # of many
-    pass_seconds: float = 0.1  # what one pass may take; slow contenders get fewer rows
+    files: int = 1_000  # number of small files
+    pass_seconds: float = 0.1  # planned time of a pass; slow contenders get fewer rows
 
 
 QUICK = Size(5_000, 100_000, 20_000, (10, 1000), (10, 100), 10, 3, 2, 1_000_000, 40, 0.05)
 
 
 def formula(text: str, bools: str = "p, q, r, s", reals: str = "") -> Formula:
-    """A formula of our language over Boolean signals, and numbers.
+    """Parse a formula of rvmon over Boolean signals and numbers.
 
     >>> formula("p -> within 3 ns x > 1", reals="x").interval is None
     True
@@ -79,10 +79,10 @@ def formula(text: str, bools: str = "p, q, r, s", reals: str = "") -> Formula:
 
 
 def specification(requirements: Sequence[str], columns: Mapping[str, Column]) -> str:
-    """A specification with one requirement per text, the lines below its name, in held time.
+    """A specification in held time with one requirement per text, which follows its name.
 
-    The rows are as many ticks apart as the bounds are scaled by, so that a value held from row to
-    row is what discrete-time tools see at each row.
+    The distance of rows in ticks is the scale of the bounds, so that a value held from row to row
+    is what discrete-time tools see at each row.
     """
     lines = ["spec benchmark", "time held", ""]
     for name, column in columns.items():
@@ -103,7 +103,7 @@ def _online(size: Size) -> Iterator[Workload]:
 
 
 def _many(size: Size) -> Iterator[Workload]:
-    """So many responses on one stream of 20 signals, of which one changes at each row."""
+    """Many responses on one stream of 20 signals, of which one changes at each row."""
     names = [f"v{number}" for number in range(20)]
     rng = random.Random("many")
     changed = [rng.choice(names) for _ in range(size.rows // 2)]
@@ -117,7 +117,7 @@ def _many(size: Size) -> Iterator[Workload]:
 
 
 def _response(form: str, asked: str, answer: str, high: int, *, strict: bool = False) -> Formula:
-    """An answer within a deadline; `strict`: not asked where it is answered at once."""
+    """A response within a deadline; with `strict` an immediate answer is no request."""
     open_ = f"({asked} and not {answer})" if strict else asked
     past = f"not ((not {answer}) since[{high} ns, inf) {open_})"
     future = f"{asked} -> eventually[0 ns, {high} ns] {answer}"
@@ -146,11 +146,11 @@ _UNSTEADY = {
     "settle": "x > 8 -> eventually[0 ns, 50 ns] always[0 ns, 30 ns] x < 6",
     "stop": "s > 5 -> eventually[0 ns, 30 ns] always[0 ns, 200 ns] v <= 0.01",
 }
-"""Forms that people write."""
+"""Formulas as people write them."""
 
 
 def _unsteady(size: Size, section: str = "unsteady") -> Iterator[Workload]:
-    """Over values that are drawn anew and cross at every row."""
+    """Formulas over random values that change and cross the bounds at every row."""
     rng, rows = random.Random("unsteady"), size.rows
     columns = {
         "x": [rng.uniform(0, 10) for _ in range(rows)],
@@ -164,7 +164,7 @@ def _unsteady(size: Size, section: str = "unsteady") -> Iterator[Workload]:
 def _of_numbers(
     section: str, name: str, form: str, text: str, columns: Mapping[str, Column]
 ) -> Workload:
-    """Over those of the columns that the formula reads, a second apart."""
+    """A workload with the columns that the formula reads, with rows a second apart."""
     asked = formula(text, "p", ", ".join(columns))
     used = {name: columns[name] for name in sorted({*names_read(asked)})}
     return Workload(section, name, form, (asked,), used, SECOND)
@@ -178,11 +178,11 @@ _FAILING = {
     "settle": ("future", "x > 5 -> eventually[0 ns, 10 ns] always[0 ns, 3 ns] y < {}", 8.6, 5.1),
     "past": ("past", "x > 5 -> once[0 ns, 3 ns] y < {}", 6.4, 1.2),
 }
-"""With numbers by which the formula is false at 1 % and at 30 % of the rows."""
+"""Form, formula, and the numbers that make it false at 1 % and at 30 % of the rows."""
 
 
 def _failing(size: Size) -> Iterator[Workload]:
-    """Forms that are false at 1 % and at 30 % of the rows; all values are new at every row."""
+    """Formulas that are false at 1 % and at 30 % of the rows; all values change at every row."""
     rng = random.Random("failing")
     columns = {name: [rng.uniform(0, 10) for _ in range(size.rows)] for name in "xy"}
     for place, share in enumerate(("1 %", "30 %")):
@@ -198,7 +198,7 @@ _BATCHED = (
 
 
 def families(section: str, named: Sequence[tuple[str, int]], *rows: int) -> Iterator[Workload]:
-    """Families of past forms, with many and with few rows that change."""
+    """Past forms of Timescales families, on traces of the given numbers of rows."""
     for name, high in named:
         family = timescales.FAMILIES[name]
         asked = (formula(family.text("past", high)),)
@@ -216,4 +216,4 @@ SECTIONS: Mapping[str, Callable[[Size], Iterator[Workload]]] = {
     "margins": lambda size: _unsteady(size, "margins"),
     "batch": lambda size: families("batch", _BATCHED, size.columns, size.columns // 10),
 }
-"""What all contenders pass over, by section."""
+"""The workloads of each section."""
