@@ -56,7 +56,7 @@ def print_holes(summary: Summary, printer: Printer) -> None:
         printer.line(wrapped(f"{line}: {why}" if why else line, printer.width))
         printer.line((wrapped(f"  {summary.hole_texts[place]}", printer.width), "dim"))
     if summary.unreachable:
-        printer.line(("excluded, as they cannot be hit:", "bold"))
+        printer.line(("excluded because they cannot be hit:", "bold"))
     for reason, places in summary.unreachable.items():
         names = ", ".join(map(summary.item_name, places))
         printer.line(wrapped(f"{reason}: {names}", printer.width))

@@ -71,7 +71,7 @@ def test_the_page_has_what_the_model_says(demo):
     runs = re.findall(row.format("runs,", "conform"), section)
     assert [name for name, *_ in runs][:3] == ["pseudorandom", "constrained", "model-based"]
     assert all(count == conforming == "1" for _, count, conforming, _ in runs)
-    assert 'title="the witness of R1, played">T</a>' in page
+    assert 'title="the replayed witness of R1">T</a>' in page
 
 
 def test_the_paper_stands_beside_the_spread_over_seeds(demo):
@@ -119,7 +119,7 @@ def test_directed_tests_say_which_others_failed(demo):
     page = (demo / "report.html").read_text()
     section = page[page.index("<h2>Correct robot: directed tests</h2>") :]
     heads = re.findall(r"<th>(.*?)</th>", section[: section.index("</thead>")])
-    others = "others that failed, or are open"
+    others = "others that failed or are open"
     assert heads == ["test", "purpose", "planted fault", "R1", "R2", "R3", "R4", "R5", others]
     row = section[section.index(">mutant-hurries<") :].partition("</tr>")[0]
     assert 'T14 <a href="runs/correct-mutant-hurries.html#T14">F' in row

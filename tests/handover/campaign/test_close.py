@@ -52,7 +52,7 @@ def test_all_say_the_same_share(closed, capsys):
     below, above = (f"{100 * share + by}%" for by in (-0.01, 0.01))
     assert rvmon(["cover", database, "--require", below]) == 0
     assert rvmon(["cover", database, "--require", above]) == 1
-    assert "excluded, as they cannot be hit" in (folder / "coverage.html").read_text().lower()
+    assert "excluded because they cannot be hit" in (folder / "coverage.html").read_text().lower()
     capsys.readouterr()
 
 

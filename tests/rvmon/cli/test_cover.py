@@ -62,7 +62,7 @@ def test_what_cannot_be_hit_stands_apart(door, capsys):
     assert code == 1
     assert "4 holes:" not in lines
     assert "near coverpoint 1 of 1 100 % ████████████████████" in lines
-    heading = lines.index("excluded, as they cannot be hit:")
+    heading = lines.index("excluded because they cannot be hit:")
     told = "a fence is there: near: reach, near: far, situation: yes × reach"
     assert lines[heading + 1] == told
     assert main(["cover", door, "--require", "1%"]) == 1  # something illegal was hit

@@ -20,5 +20,5 @@
   form.hidden = false;
   form.addEventListener("input", filter);
   form.addEventListener("submit", (event) => event.preventDefault());
-  filter(); // a browser may have kept what was typed
+  filter(); // the browser may have restored the search field
 })();

@@ -41,7 +41,7 @@
     setInstant(run.panels[section.id].instant);
   }
 
-  /** Where an instant lies in the whole run, 0 to 1. */
+  /** The place of an instant in the whole run, 0 to 1. */
   function share(t) {
     return (t - run.start) / (run.end - run.start);
   }
