@@ -315,6 +315,7 @@ def _note_conflicts(batch: Batch, name: str, cells: Cells, conflicts: Conflicts)
     times, values = batch.times[rows], cells.values[rows]
     differs = values[1:] != values[:-1]
     if cells.says is not None:
+        # Two unknown values agree, whatever stands in `values`; an unknown and a known one do not.
         none = cells.says[rows] == UNKNOWN
         differs = (differs & ~(none[1:] & none[:-1])) | (none[1:] != none[:-1])
     found = np.flatnonzero((times[1:] == times[:-1]) & differs)

@@ -124,6 +124,7 @@ class _Reader:
         fault = None
         if (hole := text.find(b"\0", start, at)) >= 0:
             line = len(text[start : hole + 1].splitlines())
+            # Keep the rows before that line.
             rows = int(lines[:rows].searchsorted(line))
             fault = line, TraceError(NEVER_WRITTEN)
         # Cells that C does not read (unusual notations, quotes) are read by the functions for

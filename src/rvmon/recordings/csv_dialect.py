@@ -199,6 +199,7 @@ def _plain_lines(text: io.TextIOWrapper, dialect: Dialect, stamps: Stamps | None
         missing = number - lines - plain.count("\n") if lines else 0
         lines += missing + plain.count("\n")
         yield "\n" * missing + (plain if source.is_ended else plain[:-1])
+        # Convert in bulk as long as possible; where that fails, go on row by row for a while.
         if number >= again and made is _unchanged and dialect.separator:
             yield "\n" * (number - lines)
             lines = number

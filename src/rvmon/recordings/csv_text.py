@@ -111,6 +111,7 @@ class CsvText(Generic[_Found]):
                 yield self.cut(len(self.rest) if found is None else found.end())
                 looked_at = self.start
             else:
+                # Search only new text, and the last byte, which may be half of a line end.
                 looked_at = max(0, len(self.rest) - self.start - 1)
                 self.read_on()
 

@@ -109,8 +109,9 @@ class UnknownWhileLost:
     def __init__(self, outages: Iterable[Outage], names: Set[str]) -> None:
         self._names = names
         self._waiting = deque(sorted(outages, key=lambda outage: outage.since))
+        # the instants at which batches are cut, as names get lost or are no longer lost
         self._turns = sorted({t for one in self._waiting for t in (one.since, one.until)})
-        self._lasting: list[tuple[int, Set[str]]] = []
+        self._lasting: list[tuple[int, Set[str]]] = []  # current outages: end and names
 
     def parts(self, piece: Batch | Sample) -> Iterator[Batch | Sample]:
         """Yield the next piece in parts without lost names; a sample tells where names become lost.

@@ -72,6 +72,7 @@ def _batch(text: bytes, schema: Schema, ignored: Counter[str]) -> Batch:
     except (msgspec.DecodeError, RecursionError, UnicodeError):
         raise NotPlainError("a line is no object of JSON") from None
     stamps = [name for name in DEFAULT_COLUMNS if name in columns]
+    # Blank lines, and the list `events`, are read by rows only.
     if len(rows) != lines or len(stamps) != 1 or "events" in others:
         raise NotPlainError("its lines have not one stamp")
     if names_in(text) != count:  # the decoder keeps only the last of equal names

@@ -105,8 +105,9 @@ class Rows:
         from rvmon.recordings.batch import Batch, note_batch, without_ignored
 
         self._reset()
+        # The merged rows of the latest instant; held back, as the next row may have that instant.
         held: Sample | None = None
-        first = last = 0  # the numbers of the rows that `held` was made of
+        first = last = 0  # the numbers of the first and last row in `held`
         for piece in pieces:
             rows: Iterable[Sample]
             if isinstance(piece, Batch):

@@ -114,6 +114,7 @@ CONNECTIVES: Mapping[BinaryOp, Callable[[float, float], bool]] = {
 
 _WORDS = frozenset({"and", "or", "xor", "not", "true", "false"})
 
+# Names in backticks, and paths of fields; a name before a parenthesis is a function.
 _PATH = re.compile(r"`[^`]*`|(?<![\w.])[^\W\d]\w*(?:\.[^\W\d]\w*|\[[^\[\]`]*\])*(?!\w*\()")
 
 _OF_ARRAYS: Mapping[str, Callable[..., Any]] = {"min": least, "max": greatest}

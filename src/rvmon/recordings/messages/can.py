@@ -124,7 +124,7 @@ class FrameMessages(Messages):
 
             yield from mdf_frames(self._path)
             return
-        held, last = None, None
+        held, last = None, None  # `held`: the latest frame, which may be cut off
         mode: dict[str, Any] = {"mode": "rb"} if ending == ".blf" else {"errors": "replace"}
         with open(self._path, **mode) as file, errors_as_damage("a log of CAN"):
             frames, losing = _reading(self._path, file)

@@ -188,6 +188,7 @@ def _damage(log: Any, data: Any, starts: Mapping[int, Any], end: int) -> list[Ou
             stamped = _rows(form, data, inside)[stamps.column]
             times[np.searchsorted(places, inside)] = ticks_of_column(stamped, stamps)
     found = []
+    # In an undamaged log each message starts where the one before ends.
     for gap in np.flatnonzero(ends[:-1] != places[1:]).tolist():
         before, after = times[: gap + 1], times[gap + 1 :]
         since = int(before.max())  # a lost message may have had the stamp of the one before

@@ -42,6 +42,7 @@ class BagMessages(Messages):
             self._reader = reader(path)
             self._reader.open()
         self.count = self._reader.message_count
+        # The library gives the first instant after the last message.
         self.end = self._reader.end_time - 1 if self.count else None
         topics: list[Topic] = []
         self._decoders: dict[int, Callable[[bytes], Any]] = {}

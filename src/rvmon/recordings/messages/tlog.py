@@ -136,6 +136,7 @@ class TelemetryMessages(Messages):
         known, sum_of = self._dialect.mavlink_map.get(number), self._dialect.x25crc
         if known is not None and sum_of(body + bytes([known.crc_extra])).crc == expected:
             return _OURS
+        # Try all extra bytes, each with one step of the X.25 checksum after the body's.
         before = sum_of(body).crc
         for extra in range(256):
             one = (extra ^ before) & 0xFF

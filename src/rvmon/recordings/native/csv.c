@@ -213,12 +213,13 @@ csv_end csv_read(csv_reader *r)
         if (r->rows == r->room) {
             return CSV_FULL;
         }
+        /* The fast path first; the row at which it stops is read by itself. */
         if (csv_plain(r, lines_end) > 0) {
             continue;
         }
         ended = read_row(r, r->text + r->at, &next, &line);
         if (ended != ROW_READ) {
-            r->odd_count = odd_count;
+            r->odd_count = odd_count; /* forget the odd cells of a row that is not kept */
         }
         switch (ended) {
         case ROW_OPEN: return CSV_ALL;

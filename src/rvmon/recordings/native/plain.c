@@ -46,8 +46,8 @@ static int32_t split(const csv_reader *r, int32_t size, int64_t most, stretch *s
     const int32_t width = r->width;
     int32_t at = 0;
     int32_t end = 0; /* of the rows found */
-    int32_t *next = s->places;
-    const int32_t *last = next + width;
+    int32_t *next = s->places; /* the latest offset */
+    const int32_t *last = next + width; /* the place of the end of the row's last cell */
     *next = -1;
     while (at < size) {
         const int32_t begin = at;
@@ -56,7 +56,7 @@ static int32_t split(const csv_reader *r, int32_t size, int64_t most, stretch *s
             marks = marks_in(text + at);
         } else {
             char rest[64];
-            (void)memset(rest, 'x', sizeof rest);
+            (void)memset(rest, 'x', sizeof rest); /* which is above a comma, so not marked */
             (void)memcpy(rest, text + at, (size_t)(size - at));
             marks = marks_in(rest);
         }
@@ -95,7 +95,7 @@ static int32_t split(const csv_reader *r, int32_t size, int64_t most, stretch *s
                     || (after - text >= size)) {
                     return end;
                 }
-                at = (int32_t)(after - text);
+                at = (int32_t)(after - text); /* marks inside of the quotes do not count */
                 break;
             }
         }

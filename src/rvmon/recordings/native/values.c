@@ -129,7 +129,7 @@ static int date_of(const char *from, const char *to, csv_number *made)
     }
     seconds = days_of(year, month, day) * 86400 + hour * 3600 + minute * 60 + second - ahead;
     if ((seconds <= -4611686018) || (seconds >= 4611686018)) {
-        return CSV_ODD;
+        return CSV_ODD; /* beyond 2^62 ns, or close to it */
     }
     made->whole = seconds * 1000000000 + part;
     return CSV_YES;
