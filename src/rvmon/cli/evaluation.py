@@ -204,6 +204,8 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
             coverage=True,
         )
         end = recording.end if options.until is None else ticks_of_seconds(options.until)
+        if options.until is not None:
+            recording.end_findings(ticks_of_seconds(options.until))
         coverage = RecordingCoverage(spec, options, recording, end)
         show = partial(shown_while_reading, recording) if is_alone else iter
         remembered = Remembered(spec, recording, options.only)

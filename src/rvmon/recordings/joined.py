@@ -56,7 +56,7 @@ class Joined:
     count = 0  # the number of rows is not known
 
     def __init__(self, files: Sequence[File], rows: Rows) -> None:
-        self._files = files
+        self.files = files
         self.rows = rows
         found: dict[str, str] = {}
         for file in files:
@@ -90,7 +90,7 @@ class Joined:
         from rvmon.recordings.batch import outer_join
 
         number = 1
-        heads = [head for head in map(_Head, self._files) if head.is_there]
+        heads = [head for head in map(_Head, self.files) if head.is_there]
         while heads:
             # All files have been read up to `until`. The file whose part ends first may still give
             # rows of that instant and later ones.
@@ -120,7 +120,7 @@ class Joined:
 
     def stamp_doubts(self) -> list[Health]:
         """The doubts about each file: its rows, its stamps and its end."""
-        return [doubt for file in self._files for doubt in (*file.rows.doubts(), *file.doubts())]
+        return [doubt for file in self.files for doubt in (*file.rows.doubts(), *file.doubts())]
 
 
 class _Head:

@@ -137,6 +137,11 @@ class FileRecording:
         held = self._messages or self._joined
         return () if held is None else held.outages
 
+    def end_findings(self, until: int) -> None:
+        """Leave samples after an instant (ticks) out of the findings about rows."""
+        for one in (self, *(() if self._joined is None else self._joined.files)):
+            one.rows.until = until
+
     def _take_names(self, layout: Layout) -> None:
         self.names = layout.names
         self._stamps = layout.stamps

@@ -12,7 +12,7 @@ from rvmon.recordings.coalesce import Alternations, Conflicts, merged, updates_i
 from rvmon.recordings.csv_text import native_csv
 from rvmon.trace.sample import Health, HealthKind, Sample, Value
 from rvmon.trace.schema import Schema, Stamps
-from rvmon.trace.time import TICKS_PER_SECOND, format_ticks
+from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT, format_ticks
 
 if TYPE_CHECKING:
     from rvmon.recordings.batch import Batch
@@ -81,6 +81,7 @@ class Rows:
         self._schema = schema
         self._unit = unit
         self.ordered = ordered
+        self.until = TIME_LIMIT  # ticks; the findings leave later samples out
         self._reset()
 
     def samples(self, rows: Iterable[Row]) -> Iterator[Sample]:
@@ -129,7 +130,8 @@ class Rows:
                         yield self._take_note(held, first, last)
                         held = None
                     middle = batch.cut(start, stop) if stop - start < count else batch
-                    note_batch(middle, rise, self.alternations, self._conflicts)
+                    judged = middle.up_to(self.until)
+                    note_batch(judged, rise, self.alternations, self._conflicts)
                     yield middle
                 rows = self._then_backwards(whole, stop, count)
             else:
@@ -157,7 +159,8 @@ class Rows:
         self._leaps: list[tuple[int, int]] = []
 
     def _take_note(self, sample: Sample, first: int, last: int) -> Sample:
-        self.alternations.note(sample.values)
+        if sample.t <= self.until:
+            self.alternations.note(sample.values)
         self._latest_rows = first, last
         return sample
 
@@ -175,7 +178,8 @@ class Rows:
         return f"{self._unit} {first}" if first == last else f"{self._unit}s {first} to {last}"
 
     def _merged(self, held: Sample, sample: Sample) -> Sample:
-        return Sample(held.t, merged(held, sample.values, self._schema.events, self._conflicts))
+        conflicts = self._conflicts if held.t <= self.until else Conflicts()
+        return Sample(held.t, merged(held, sample.values, self._schema.events, conflicts))
 
     def _note_times(self, batch: Batch) -> tuple[Batch, bool]:
         """Take note of instants; give the rows before time goes back, and whether they all differ.
@@ -263,13 +267,14 @@ class Rows:
     def doubts(self) -> list[Health]:
         """The doubts about rows: signals with two values at one stamp, stamps of another clock."""
         found = self._conflicts.health()
-        if self._leaps:
-            last, t = self._leaps[0]
+        leaps = [(last, t) for last, t in self._leaps if t <= self.until]
+        if leaps:
+            last, t = leaps[0]
             remark = (
                 f"from {format_ticks(last)} to {format_ticks(t)} there are "
                 f"{(t - last) / LEAP:.1f} years: is one of them from another clock?"
             )
-            found.append(Health(HealthKind.CLOCK, "stamps", len(self._leaps), t, remark=remark))
+            found.append(Health(HealthKind.CLOCK, "stamps", len(leaps), t, remark=remark))
         return found
 
     def with_findings(self, health: Sequence[Health]) -> tuple[Health, ...]:

@@ -178,6 +178,26 @@ def test_what_was_judged_in_columns_before_a_fault_is_told(files, says):
     assert JUDGED_BEFORE in told
 
 
+@pytest.mark.parametrize("words", [["a.csv"], ["a.jsonl"], ["a.csv", "b.csv", "--join"]])
+def test_what_is_odd_behind_the_end_is_no_finding(words, tmp_path, monkeypatch, says):
+    monkeypatch.chdir(tmp_path)
+    signals = "signal x : int\nsignal y : real\nsignal z : bool\n"
+    Path("a.rv").write_text(f"spec s\n{signals}requirement R\n  always (x < 9 and y < 9) or z\n")
+    Path("b.csv").write_text("t,z\n0,0\n1,0\n")
+    begin = [(0, 1, 1), (1, 2, 1), (1, 3, 2), (2, 1, 1)]
+    later = [(3 + k // 2, k, "NaN" if k % 4 else 1) for k in range(40)] + [(10**9, 1, 1)]
+    found = []
+    for rows in (begin, begin + later):
+        Path("a.csv").write_text("t,x,y\n" + "".join(f"{t},{x},{y}\n" for t, x, y in rows))
+        lines = [f'{{"t": {t}, "x": {x}, "y": {y}, "z": false}}\n' for t, x, y in rows]
+        Path("a.jsonl").write_text("".join(lines))
+        options = "--allow-missing", "--until", "2.5", "--format", "json"
+        told = says(int(words == ["a.csv"]), "run", "a.rv", *words, *options)
+        found.append(json.loads(told.out)["health"])
+    assert found[0] == found[1]
+    assert [one["name"] for one in found[0] if one["kind"] == "conflict"] == ["x", "y"]
+
+
 @pytest.mark.parametrize(
     ("until", "end", "verdict"),
     [("2", 2, "I"), ("3", 3, "F"), ("3000ms", 3, "F"), ("30", 30, "F")],
