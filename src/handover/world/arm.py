@@ -99,6 +99,7 @@ class Arm:
             zip(self.scene.joint_motors, wanted, self.joints(), strict=True)
         ):
             error = want - have
+            # A motor of pymunk turns its second body at minus `rate` relative to the first.
             rate = -error / p.CONTROL_S if abs(error) > 1e-6 else 0.0
             if rate != self._rates[index]:
                 self._rates[index] = rate

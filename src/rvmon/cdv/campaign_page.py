@@ -61,6 +61,7 @@ def choose_examples(
         or differences(test_run.job.test.expected, test_run.outcome.verdicts)
     }
     cells = [_cells_of(test_run) for test_run in playable]
+    # Backwards, so that of several shown tests the first one is the example of a cell.
     backwards = sorted(shown, reverse=True)
     by_cell = {cell: playable[place].job for place in backwards for cell in cells[place]}
     left = set().union(*cells) - by_cell.keys()

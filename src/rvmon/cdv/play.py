@@ -226,6 +226,7 @@ def execute(
     """
     tests = plan.jobs() if kept is None else kept.jobs
     known = {} if kept is None else kept.known
+    # As if begun earlier by the time that the known tests took, so that seconds include theirs.
     begun = time.perf_counter() - (kept.seconds if kept is not None else 0)
     left = [job for job in tests if (job.test.name, job.robot) not in known]
     played: list[Played] = []

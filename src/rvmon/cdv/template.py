@@ -107,6 +107,7 @@ def choose_times(template: Template[Any], rng: random.Random, patience: int) -> 
     from rvmon.models.runs import close
 
     size = len(template.steps) + 1
+    # A difference bound matrix: `most[i, j]` is the most time from step i to step j.
     most = np.where(np.eye(size, dtype=bool), 0.0, inf)
     neighbours = [
         Limit(last - 1, last, step.wait) for last, step in enumerate(template.steps, start=1)

@@ -103,7 +103,7 @@ def close(
                 proposals = proposer.batch(min(BATCH, budget.tests - len(tests)))
                 waiting.jobs.extend(Job(proposal.test, robot) for proposal in proposals)
                 for proposal in proposals:
-                    outcome, _ = next(results)
+                    outcome, _ = next(results)  # takes its job from `waiting`
                     if witnesses is not None and proposal.witness is not None:
                         shown = witnesses.shown(proposal.witness, proposal.test.name, outcome.hits)
                         outcome = replace(outcome, hits={**outcome.hits, **shown})

@@ -228,6 +228,7 @@ class Witnesses:
             return {}
         edges = [self._names[taken] for taken in _edges_of(witness.run)]
         visited = hits.get(STATES, {})
+        # Only first entries are compared, as a system may re-enter a state, for example to poll.
         went = sorted(visited, key=lambda state: visited[state].first or 0)
         for came, planned in zip_longest(went, self._states_of(witness.run)):
             if planned is not None and came != planned:

@@ -59,6 +59,7 @@ def _path_of(module: ModuleType) -> str | None:
 
 
 def _change_loader(path: str, changed: CodeType) -> None:
+    """Load the file with the change, if it is loaded later."""
     known = SourceFileLoader.get_code
 
     def get_code(self: SourceFileLoader, name: str) -> CodeType | None:
