@@ -30,8 +30,8 @@ def look(spec: rvmon.Spec, bag: Path) -> tuple[str, str]:
     except rvmon.TraceError as error:
         return "?", str(error).splitlines()[0]
     worst = min((verdict.value for verdict in report.verdicts.values()), key=ORDER.index)
-    told = [attempt for attempt in report.attempts if attempt.verdict.value == worst != "P"]
-    return worst, str(told[0]) if told else ", ".join(report.verdicts)
+    shown = [attempt for attempt in report.attempts if attempt.verdict.value == worst != "P"]
+    return worst, str(shown[0]) if shown else ", ".join(report.verdicts)
 
 
 def triage(folder: Path) -> list[tuple[str, str, str]]:

@@ -47,8 +47,8 @@ def main():
         reward, verdict = play(env, reach)
         if reward > best:
             best, best_reach = reward, reach
-            told = f"episode {episode}: reaches after {reach * STEP_S:.1f} s,"
-            print(told, f"reward {reward:.3f}, R5 {verdict}")
+            progress = f"episode {episode}: reaches after {reach * STEP_S:.1f} s,"
+            print(progress, f"reward {reward:.3f}, R5 {verdict}")
         if verdict == "F":
             Path(sys.argv[1]).write_bytes(to_json(env.unwrapped.test))
             return

@@ -13,7 +13,7 @@ import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
-from handover.driver.play import Played, begun
+from handover.driver.play import Played, set_up
 from handover.generator.abstract_test import AbstractTest, Action, SendSignal, SetParam, Withdraw
 from handover.world.measures import gripper_centre
 from handover.world.recorder import Sample
@@ -101,7 +101,7 @@ class HandoverEnv(gymnasium.Env[NDArray[np.float32], np.int64]):
         self._steps = 0
         self._reported = 0
         self._informed = False
-        self._played = begun(
+        self._played = set_up(
             self.test, actions=self._acts(), robot=self._robot, mutation=self._mutation
         )
         return self._observed(self._played), {"samples": (), "begun": False}

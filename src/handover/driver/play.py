@@ -91,12 +91,12 @@ def run_test(test: AbstractTest, **options: Any) -> Run:
 
     Args:
         test: the actions of the human, and the seed of everything random.
-        **options: as for `begun`.
+        **options: as for `set_up`.
 
     Raises:
         TestError: there is no robot or mutation of that name.
     """
-    played = begun(test, **options)
+    played = set_up(test, **options)
     horizon_ns = round(test.horizon_s * TICKS_PER_SECOND)
     played.world.run(horizon_ns)
     return Run(
@@ -118,7 +118,7 @@ class Played:
     states: list[tuple[int, str]]  # `(t_ns, state)` for each entry of a robot state so far
 
 
-def begun(
+def set_up(
     test: AbstractTest,
     *,
     actions: Iterable[Action] | None = None,

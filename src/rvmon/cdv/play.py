@@ -131,11 +131,11 @@ class Bench:
         measured = self._meter or nullcontext()
         marked = measured if self._marked else None
         observer = Observer(takers, code=marked, wants_scene=wants_scene)
-        begun = time.process_time()
+        cpu_started = time.process_time()
         # Measure all of `play`, or only what the system runs within `observer.code()`.
         with nullcontext() if self._marked else measured:
             run = run_of(self._system, test, observer)
-        cpu_s = time.process_time() - begun
+        cpu_s = time.process_time() - cpu_started
         hits = hits_of_states(run)
         if self._meter is not None:
             hits |= self._meter.hits()
@@ -226,8 +226,8 @@ def execute(
     """
     tests = plan.jobs() if kept is None else kept.jobs
     known = {} if kept is None else kept.known
-    # As if begun earlier by the time that the known tests took, so that seconds include theirs.
-    begun = time.perf_counter() - (kept.seconds if kept is not None else 0)
+    # Back-dated by the time that the known tests took, so that `seconds` includes it.
+    started = time.perf_counter() - (kept.seconds if kept is not None else 0)
     left = [job for job in tests if (job.test.name, job.robot) not in known]
     played: list[Played] = []
     cut_short = "" if kept is None or kept.shard is None else f"shard {kept.shard}"
@@ -241,12 +241,12 @@ def execute(
                     continue
                 played.append(Played(job, *next(results)))
                 if kept is not None:
-                    kept.played(played[-1], time.perf_counter() - begun)
+                    kept.played(played[-1], time.perf_counter() - started)
                 if progress is not None:
                     progress(len(played))
     except KeyboardInterrupt:
         cut_short = INTERRUPTED
-    return Results(plan, tuple(played), time.perf_counter() - begun, cut_short)
+    return Results(plan, tuple(played), time.perf_counter() - started, cut_short)
 
 
 def outcomes(

@@ -103,10 +103,10 @@ def shrink(
     failure = failure_of(outcome, requirement, known)
     if failure is None:
         return None
-    began = time.perf_counter()
+    started = time.perf_counter()
     search = _Search(test, outcome, play, failure, most)
     is_minimal = search.run()
-    seconds = time.perf_counter() - began
+    seconds = time.perf_counter() - started
     return Shrunk(search.test, search.outcome, failure, search.tried, seconds, is_minimal)
 
 

@@ -226,8 +226,8 @@ def _actions_by_edge(
         if not alike:
             raise TestError(f"actions of a model: it has no edge {name}")
         if len(several := dict.fromkeys(alike.values())) > 1:
-            told = ", ".join(map(str, several))
-            raise TestError(f"actions of a model: it has several edges {name}: name each: {told}")
+            listed = ", ".join(map(str, several))
+            raise TestError(f"actions of a model: it has several edges {name}: name each: {listed}")
         found |= dict.fromkeys(alike, action)
     return found
 

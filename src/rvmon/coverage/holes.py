@@ -197,7 +197,7 @@ def _of_code(group: Group, name: str, text: str, hits: Hits) -> tuple[str, str, 
     if not before:
         return what, "nothing of the block before it ran", f"a run that enters `{block}`"
     why = f"line {before[-1]} before it ran, but did not lead there"
-    return what, why, f"a run that goes on from line {before[-1]} to it"
+    return what, why, f"a run that continues from line {before[-1]} to it"
 
 
 def _of_requirement(group: Group, name: str, hits: Hits) -> tuple[str, str, str]:

@@ -8,7 +8,7 @@ import pytest
 import rvmon
 from handover.checker import spec_path
 from handover.driver import run_test
-from handover.driver.play import begun
+from handover.driver.play import set_up
 from handover.generator.abstract_test import directed
 from handover.generator.disturbed import disturbed
 from handover.generator.model_based import model_based
@@ -199,7 +199,7 @@ def test_a_world_that_must_not_be_is_told(requirement):
 
 def test_a_clamped_hand_bears_what_one_finger_presses():
     """Forces are of single bodies: two fingers that clamp it do not add up."""
-    world = begun(TESTS["hand-hidden-by-noise"]).world
+    world = set_up(TESTS["hand-hidden-by-noise"]).world
     world.run(17_200_000_000)
     scene = world.scene
     by_finger = [contact_forces(scene.hand)[finger] for finger in scene.fingers]

@@ -7,7 +7,7 @@ import pytest
 from msgspec import structs
 
 from handover.driver import run_test
-from handover.driver.play import begun
+from handover.driver.play import set_up
 from handover.generator.abstract_test import directed
 from handover.world import parameters as p
 from handover.world.faults import SceneFaults
@@ -73,7 +73,7 @@ def test_each_part_feels_its_own_contacts(test: str, struck: set[str]) -> None:
 @pytest.mark.campaign
 def test_contacts_of_a_struck_forearm_are_told_by_pair() -> None:
     test = TESTS["mutant-strikes-a-forearm"]
-    world = begun(test).world
+    world = set_up(test).world
     scene = world.scene
     assert scene.arms is not None
     pairs: set[int] = set()

@@ -136,7 +136,7 @@ WAYS = {"A → B": HIT, "B → C": HIT}
             ("statements of f", "9"),
             {"statements of f": {"3": HIT, "4": HIT}},
             "line 4 before it ran, but did not lead there",
-            "a run that goes on from line 4 to it",
+            "a run that continues from line 4 to it",
         ),
         (("branches of f", "3 → 9"), {"statements of f": {"4": HIT}}, "3 never ran", "reaches it"),
         (("branches of f", "3 → 9"), {"statements of f": {"3": HIT}}, "3 ran, but", "this one"),

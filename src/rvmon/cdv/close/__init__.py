@@ -86,7 +86,7 @@ def close(
     (tests from runs of a timed model); Ma, Franco, McCluskey, An experimental chip to evaluate test
     techniques, ITC 1995 (covering each goal several times finds faults that nobody modelled).
     """
-    begun = time.monotonic()
+    started = time.monotonic()
     campaign = replace(campaign, robots={robot: campaign.robots[robot]})
     model = campaign.closing.model
     describes = model is not None and robot in (model.robots or campaign.robots)
@@ -117,7 +117,7 @@ def close(
                     ended = "no further test can be made"
                 elif len(tests) >= budget.tests:
                     ended = f"after {budget.tests} tests"
-                elif budget.seconds is not None and time.monotonic() - begun > budget.seconds:
+                elif budget.seconds is not None and time.monotonic() - started > budget.seconds:
                     ended = f"after {budget.seconds:g} s"
     except KeyboardInterrupt:
         ended = INTERRUPTED
@@ -138,7 +138,7 @@ def close(
         open=goals.holes() if witnesses is None else witnesses.explained(goals.holes()),
         wrong=goals.wrong,
         groups=() if witnesses is None else witnesses.groups,
-        seconds=time.monotonic() - begun,
+        seconds=time.monotonic() - started,
         ended=ended if goals.open else "",
     )
 
