@@ -24,7 +24,7 @@ from rvmon.verdicts.attempt import Attempt, Decision
 
 # Kinds and flags of notes, as in `notes.h`.
 _DECIDED, _OPEN, _NOTHING = 0, 1, 2
-_NETWORK, _CUT, _PARTED, _HOLLOW, _SURE = 1, 2, 4, 8, 16
+_NETWORK, _CUT, _PARTED, _CANNOT_PASS, _SURE = 1, 2, 4, 8, 16
 _HEAD = 7  # words of a note before those of the leaves
 _NOT_YET = (1 << 63) - 1  # the end of an outage that is still open
 _SPAN = (1 << 31) - 1  # the bits of the number of a span of letters
@@ -207,7 +207,7 @@ class NoteExplainer:
         return judged, explain.Undecided(
             self.compiled, attempt.origin, attempt.triggered, worse, better, doubt,
             explain.unborn_of(names, known, doubt),
-            *(bool(flags & f) for f in (_SURE, _HOLLOW, _CUT)),
+            *(bool(flags & f) for f in (_SURE, _CANNOT_PASS, _CUT)),
         )  # fmt: skip
 
     def _networks(self, note: Note, at: int) -> tuple[explain.Judged, Token, Token, int]:

@@ -92,16 +92,16 @@ class PlannedCore(Struct, frozen=True):
     def monitor(
         self,
         absent: frozenset[str],
-        look_closer: Callable[[float, Mapping[str, Any]], Sequence[Any]] | None = None,
-        look_closer_ns: Callable[[int, Mapping[str, Any]], Sequence[Any]] | None = None,
+        slow_step: Callable[[float, Mapping[str, Any]], Sequence[Any]] | None = None,
+        slow_step_ns: Callable[[int, Mapping[str, Any]], Sequence[Any]] | None = None,
         many: Callable[[Any], Sequence[Attempt]] | None = None,
     ) -> native.Monitor:
         """Start a run.
 
         Args:
             absent: the names without a source.
-            look_closer: takes samples, stamped in seconds, that are not a `dict` of plain values.
-            look_closer_ns: the same for stamps in ticks.
+            slow_step: takes samples, stamped in seconds, that are not a `dict` of plain values.
+            slow_step_ns: the same for stamps in ticks.
             many: makes a lazy sequence from raw records, if thousands are decided at once; see
                 `rvmon.monitor.records.recorded`.
         """
@@ -112,7 +112,7 @@ class PlannedCore(Struct, frozen=True):
         attempts = (Attempt, self.packed.ids, VERDICTS, DECISIONS, self._details, many)
         return native.Monitor(
             self.packed.data, (coming, self.words, self.kinds, self.limits), is_absent,
-            (look_closer, look_closer_ns), attempts,
+            (slow_step, slow_step_ns), attempts,
         )  # fmt: skip
 
     def plain(self, t: int, values: Mapping[str, Value]) -> dict[str, Value]:

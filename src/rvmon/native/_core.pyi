@@ -35,7 +35,7 @@ class Monitor:
             event whether only one occurrence can be judged at an instant, and per signal whether
             an unknown value is no update.
         absent: per name, whether it has no source.
-        look_closer: two functions that take samples which are not plain values in a `dict`: stamped
+        slow_step: two functions that take samples which are not plain values in a `dict`: stamped
             in seconds, and in ticks.
         attempts: the type of attempts, which derives from `Record`; the ids of requirements; the
             verdicts; the decisions; a function that computes the other fields of an attempt; a
@@ -50,7 +50,7 @@ class Monitor:
         plan: bytes,
         reading: tuple[dict[str, int], tuple[Mapping[str, int] | None, ...], bytes, bytes],
         absent: bytes,
-        look_closer: tuple[Any, Any],
+        slow_step: tuple[Any, Any],
         attempts: tuple[
             type[Attempt],
             tuple[str, ...],
@@ -63,10 +63,10 @@ class Monitor:
     ) -> Monitor: ...
     def step(self, t: float, values: Mapping[str, Any]) -> Sequence[Attempt]: ...
     def step_ns(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]: ...
-    def judge(self, t: int, values: Mapping[str, Any], looked: bool, /) -> bool:
+    def judge(self, t: int, values: Mapping[str, Any], checked: bool, /) -> bool:
         """Take a sample; returns False, without effect, if it is not plain or not in order.
 
-        `looked`: Python has checked that all its occurrences can be judged.
+        `checked`: Python has checked that all its occurrences can be judged.
         """
 
     def rows(self, times: Any, columns: tuple[tuple[Any, ...], ...], /) -> int:

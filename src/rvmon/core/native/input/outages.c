@@ -209,7 +209,7 @@ static void end_outage_of(run *r, int32_t name, int64_t t)
 }
 
 /* The first position at which a name can be known again. */
-static int64_t position_behind(const run *r, int32_t name)
+static int64_t position_after(const run *r, int32_t name)
 {
     return ends_at_position(r, name) ? r->until[name] + step_of(r)
                                      : tick_from(step_of(r), r->until[name]);
@@ -222,7 +222,7 @@ static void find_name(run *r, int32_t name, int64_t at)
         /* In an outage of one instant the update there may have come before what was lost. */
         r->keeps[name] = (r->until[name] < at) ? 1 : 0;
         r->until[name] = at;
-        r->at.ends_at = least(r->at.ends_at, position_behind(r, name));
+        r->at.ends_at = least(r->at.ends_at, position_after(r, name));
     }
 }
 
@@ -237,7 +237,7 @@ void end_outages(run *r, int64_t t)
             if (r->until[i] < t) {
                 end_outage_of(r, i, t);
             } else {
-                r->at.ends_at = least(r->at.ends_at, position_behind(r, i));
+                r->at.ends_at = least(r->at.ends_at, position_after(r, i));
             }
         }
     }

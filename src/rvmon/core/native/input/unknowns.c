@@ -117,7 +117,7 @@ void note_knowledge(run *r, int64_t t, int32_t local, const rv_number *value)
 
 /* Whether the notes of a judge report a stretch: a leaf reads the signal, which is still unknown or was
  * unknown at the doubt. */
-static bool is_told(const run *r, int32_t index, const unknown_stretch *one, int64_t doubt)
+static bool is_reported(const run *r, int32_t index, const unknown_stretch *one, int64_t doubt)
 {
     const list names = r->part->judges[index].names;
     const int32_t *name = LIST(PLAN(r), names);
@@ -141,7 +141,7 @@ int64_t unknowns_count(const run *r, int32_t index, int64_t doubt)
     int64_t found = 1;
     int32_t i;
     for (i = 0; i < h->unknown_count; i++) {
-        found += is_told(r, index, &h->unknowns[i], doubt) ? 3 : 0;
+        found += is_reported(r, index, &h->unknowns[i], doubt) ? 3 : 0;
     }
     for (i = 0; i < names.count; i++) {
         found += has_no_source(h->root, LIST(PLAN(r), names)[i]) ? 3 : 0;
@@ -162,7 +162,7 @@ void put_unknowns(const run *r, int32_t index, int64_t doubt, int64_t *to)
     int32_t i;
     for (i = 0; i < h->unknown_count; i++) {
         const unknown_stretch *one = &h->unknowns[i];
-        if (is_told(r, index, one, doubt)) {
+        if (is_reported(r, index, one, doubt)) {
             own[0] = p->signals[one->local].name | ((int64_t)one->why << 32);
             own[1] = one->since;
             own[2] = one->until;

@@ -124,7 +124,7 @@ static int64_t begin_note(run *r, int32_t index, const attempt *x, int64_t kind,
     return made - m->notes;
 }
 
-static int64_t *behind_trigger(const run *r, int32_t index, int64_t note)
+static int64_t *after_trigger(const run *r, int32_t index, int64_t note)
 {
     return &r->home->monitor->notes[note + NOTE_HEAD + words_for(r->part->judges[index].leaves.count)];
 }
@@ -159,7 +159,7 @@ int64_t note_decision(run *r, int32_t index, const attempt *x, int64_t t)
         m->notes[note + 3] = span_from(m, r->judges[index].noting, m->notes[note + 6]);
     } else {
         m->notes[note + 3] = was->width;
-        write_token(behind_trigger(r, index, note), was->location, was->clocks, was->width);
+        write_token(after_trigger(r, index, note), was->location, was->clocks, was->width);
     }
     return note;
 }
@@ -231,7 +231,7 @@ int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool can
     m->notes[note + 1] = state;
     m->notes[note + 2] = now;
     m->notes[note + 5] = end;
-    to = behind_trigger(r, index, note);
+    to = after_trigger(r, index, note);
     (void)memset(to, 0, (size_t)more * sizeof *to); /* the end may stay unused */
     if (doubt != NULL) {
         m->notes[note + 4] = doubt[0];

@@ -10,13 +10,13 @@ enum { TAKEN, LEFT, FAILED };
 
 /* Convert a sample and pass it to the core. LEFT: Python has to look at it, or the core refused it;
  * nothing changed. FAILED: an error is set. No Python code runs in here. */
-static inline int take(monitor *c, int64_t t, PyObject *values, bool looked)
+static inline int take(monitor *c, int64_t t, PyObject *values, bool checked)
 {
     int code = RV_FINISHED;
     bool converted;
     c->busy = true;
     Py_BEGIN_CRITICAL_SECTION(values);
-    converted = convert_sample(&c->in, values, looked);
+    converted = convert_sample(&c->in, values, checked);
     Py_END_CRITICAL_SECTION();
     c->busy = false;
     if (converted) {
@@ -33,7 +33,7 @@ static inline int take(monitor *c, int64_t t, PyObject *values, bool looked)
 }
 
 /* Call a step function of Python with the arguments of a call of step. */
-static PyObject *looked_closer(PyObject *function, PyObject *const *args, Py_ssize_t count,
+static PyObject *step_in_python(PyObject *function, PyObject *const *args, Py_ssize_t count,
                                PyObject *names)
 {
     const Py_ssize_t named = (names == NULL) ? 0 : PyTuple_Size(names);
@@ -89,7 +89,7 @@ static PyObject *monitor_step_ns(PyObject *self, PyObject *const *args, Py_ssize
             }
         }
     }
-    return looked_closer(c->look_closer_ns, args, count, names);
+    return step_in_python(c->slow_step_ns, args, count, names);
 }
 
 /* From 2^23 s (97 days) on, neighbouring doubles are more than a nanosecond apart. */
@@ -127,7 +127,7 @@ static PyObject *monitor_step(PyObject *self, PyObject *const *args, Py_ssize_t 
             return made;
         }
     }
-    return looked_closer(c->look_closer, args, count, names);
+    return step_in_python(c->slow_step, args, count, names);
 }
 
 #define METHOD(name)                                            \
@@ -150,18 +150,18 @@ static bool is_free(const monitor *c)
     return !c->busy;
 }
 
-/* judge(t, values, looked): whether the sample was taken; `looked`: Python has already checked it. */
+/* judge(t, values, checked): whether the sample was taken; `checked`: Python has already checked it. */
 static PyObject *judge_of(monitor *c, PyObject *args)
 {
     long long t;
     PyObject *values;
-    int looked;
+    int checked;
     int done = LEFT;
-    if (!PyArg_ParseTuple(args, "LOp", &t, &values, &looked)) {
+    if (!PyArg_ParseTuple(args, "LOp", &t, &values, &checked)) {
         return NULL;
     }
     if (PyDict_CheckExact(values)) {
-        done = take(c, (int64_t)t, values, looked != 0);
+        done = take(c, (int64_t)t, values, checked != 0);
     }
     return (done == FAILED) ? NULL : Py_NewRef((done == TAKEN) ? Py_True : Py_False);
 }
@@ -264,8 +264,8 @@ static int monitor_clear(PyObject *self)
 {
     monitor *c = (monitor *)self;
     c->busy = true;
-    c->look_closer = NULL;
-    c->look_closer_ns = NULL;
+    c->slow_step = NULL;
+    c->slow_step_ns = NULL;
     Py_CLEAR(c->owner);
     free_figures(c);
     return 0;

@@ -120,8 +120,8 @@ typedef struct {
     intake in;
     int32_t *captured;         /* captured values per attempt, by requirement */
     PyObject *owner;           /* argument tuple that owns the next fields; NULL: garbage-collected */
-    PyObject *look_closer;     /* Python's step, for samples that C does not convert */
-    PyObject *look_closer_ns;  /* the same for step_ns */
+    PyObject *slow_step;       /* Python's step, for samples that C does not convert */
+    PyObject *slow_step_ns;    /* the same for step_ns */
     PyTypeObject *attempt;     /* derived from Record */
     PyObject *ids;             /* names of requirements, by number */
     PyObject *verdicts;
@@ -185,7 +185,7 @@ bool are_of_figures(const struct figures *f);
 PyObject *figure_of(const struct figures *f, PyObject *requirement, const rv_margin *x);
 
 /* ---- module_intake.c */
-bool convert_sample(intake *in, PyObject *values, bool looked);
+bool convert_sample(intake *in, PyObject *values, bool checked);
 void note_arrivals(intake *in, int64_t t);
 void count_to_come(intake *in);
 void forget_arrivals(intake *in);

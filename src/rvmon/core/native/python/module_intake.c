@@ -202,12 +202,12 @@ static bool make_room(intake *in, int64_t count, int32_t fields)
 
 /* Convert several occurrences of an event; false: Python has to look at them, or, with an error, memory
  * is short. */
-static bool convert_payloads(intake *in, int32_t name, PyObject *payloads, bool looked)
+static bool convert_payloads(intake *in, int32_t name, PyObject *payloads, bool checked)
 {
     const Py_ssize_t count = PyTuple_Size(payloads);
     bool done = true;
     Py_ssize_t i;
-    if ((count > 1) && (in->readings[name].single != 0) && !looked) {
+    if ((count > 1) && (in->readings[name].single != 0) && !checked) {
         return false;
     }
     if ((count > INT32_MAX / 2) || ((count > 1) && !make_room(in, count, in->readings[name].fields))) {
@@ -223,7 +223,7 @@ static bool convert_payloads(intake *in, int32_t name, PyObject *payloads, bool 
     return done;
 }
 
-static bool convert_event(intake *in, int32_t name, PyObject *value, bool looked)
+static bool convert_event(intake *in, int32_t name, PyObject *value, bool checked)
 {
     if (value == Py_True) {
         (void)next_update(in, name);
@@ -233,7 +233,7 @@ static bool convert_event(intake *in, int32_t name, PyObject *value, bool looked
         next_update(in, name)->says = RV_SAYS_UNKNOWN;
         in->is_odd = true;
     } else if (PyTuple_CheckExact(value)) {
-        return convert_payloads(in, name, value, looked);
+        return convert_payloads(in, name, value, checked);
     } else {
         return convert_payload(in, name, value);
     }
@@ -242,7 +242,7 @@ static bool convert_event(intake *in, int32_t name, PyObject *value, bool looked
 
 /* Convert a sample; false: Python has to look at it, or, with an error, memory is short. No Python code
  * runs, as only keys and values of exact built-in types are read. */
-bool convert_sample(intake *in, PyObject *values, bool looked)
+bool convert_sample(intake *in, PyObject *values, bool checked)
 {
     PyObject *name;
     PyObject *value;
@@ -255,7 +255,7 @@ bool convert_sample(intake *in, PyObject *values, bool looked)
         const seen_name *seen = name_at(in, name, place);
         if ((seen == NULL)
             || !((seen->number < in->signals) ? convert_signal(in, seen, value)
-                                              : convert_event(in, seen->number, value, looked))) {
+                                              : convert_event(in, seen->number, value, checked))) {
             return false;
         }
     }

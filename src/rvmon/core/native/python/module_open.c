@@ -71,7 +71,7 @@ static bool set_absent(const monitor *c, PyObject *absent)
     return true;
 }
 
-/* Monitor(plan, (numbers, words, kinds, single), absent, (look_closer, look_closer_ns),
+/* Monitor(plan, (numbers, words, kinds, single), absent, (slow_step, slow_step_ns),
  *         (attempt, ids, verdicts, decisions, details, many)) */
 PyObject *monitor_new(PyTypeObject *type, PyObject *args, PyObject *unused)
 {
@@ -88,8 +88,8 @@ PyObject *monitor_new(PyTypeObject *type, PyObject *args, PyObject *unused)
     }
     if (PyArg_ParseTuple(args, "O!(O!O!O!O!)O!(OO)(O!O!O!O!OO)", &PyBytes_Type, &data,
                          &PyDict_Type, &numbers, &PyTuple_Type, &words, &PyBytes_Type, &kinds,
-                         &PyBytes_Type, &single, &PyBytes_Type, &absent, &c->look_closer,
-                         &c->look_closer_ns, &PyType_Type, &c->attempt,
+                         &PyBytes_Type, &single, &PyBytes_Type, &absent, &c->slow_step,
+                         &c->slow_step_ns, &PyType_Type, &c->attempt,
                          &PyTuple_Type, &c->ids, &PyTuple_Type, &c->verdicts, &PyTuple_Type,
                          &c->decisions, &c->details, &c->many)) {
         c->owner = Py_NewRef(args);

@@ -41,11 +41,11 @@ void tidy_failing(run *r)
     r->failing_count = kept;
 }
 
-/* While no input comes, at most REPEATS_TOLD successive failures that time alone causes are reported one
- * by one; the rest, except for the last REPEATS_LEFT, are only counted. That bounds the cost of a stamp
+/* While no input comes, at most REPEATS_REPORTED successive failures that time alone causes are reported
+ * one by one; the rest, except for the last REPEATS_LEFT, are only counted. That bounds the cost of a stamp
  * that leaps by years: `always within 3 s e` fails 500 million times in fifty years. COUNTS_LEFT keeps
  * counts within 32 bits. */
-enum { REPEATS_TOLD = 1000, REPEATS_LEFT = 2, COUNTS_LEFT = 65536 };
+enum { REPEATS_REPORTED = 1000, REPEATS_LEFT = 2, COUNTS_LEFT = 65536 };
 
 /* Whether everything that the attempts of a run read stays the same without input, except by timers. */
 static bool is_silent(const run *r)
@@ -78,7 +78,7 @@ bool passes_repeats_over(run *r, int32_t index, int64_t t)
     }
     until = (r->cut < NEVER) ? t : until;
     many = (until > t) ? (until - t) / period - REPEATS_LEFT : 0;
-    if ((many <= REPEATS_TOLD) || ((t - silent) / period < REPEATS_TOLD)) {
+    if ((many <= REPEATS_REPORTED) || ((t - silent) / period < REPEATS_REPORTED)) {
         return false;
     }
     counted = least(many, (int64_t)(UINT32_MAX - COUNTS_LEFT) - (int64_t)j->count);

@@ -120,7 +120,7 @@ void carry_unknowns(carrier *c, home *h)
  * refer to existing states and letters. */
 
 /* What starts at a word: a note, a state, or a note that a record has claimed. */
-enum { A_NOTE = 1, A_STANDING = 2, A_TAKEN_NOTE = 3 };
+enum { A_NOTE = 1, A_STATE = 2, A_TAKEN_NOTE = 3 };
 
 /* Find where notes and states start: the first word of both has their length, for a note in its upper
  * bits. */
@@ -133,7 +133,7 @@ static void find_begins(carrier *c, const rv_monitor *m)
         const int64_t length = is_note ? word >> 40 : word;
         demand(c, (length >= (is_note ? NOTE_HEAD : 2)) && (length <= m->note_count - at));
         if (!c->refused) {
-            c->begins[at] = is_note ? A_NOTE : A_STANDING;
+            c->begins[at] = is_note ? A_NOTE : A_STATE;
             at += length;
         }
     }
@@ -174,7 +174,7 @@ bool is_state(const carrier *c, const judge_plan *judged, int64_t place)
     const rv_monitor *m = c->m;
     const int32_t leaves = words_for(judged->leaves.count);
     const int32_t letters = words_for(judged->propositions.count);
-    return (place >= 0) && (place < m->note_count) && (c->begins[place] == A_STANDING)
+    return (place >= 0) && (place < m->note_count) && (c->begins[place] == A_STATE)
            && (m->notes[place] == 2 + leaves + letters + 3 * (int64_t)judged->propositions.count)
            && are_truths(&m->notes[place + 2], leaves + letters);
 }

@@ -236,7 +236,7 @@ static bool value_of_chain(const chaining *g, chain_reading *w, int64_t at, int6
         changes *given = &w->levels[level - 1];
         int64_t first = moved(position, n->low);
         const int32_t i = changes_until(given, first);
-        bool decides = value_behind(given, i) == (n->turned == 0);
+        bool decides = value_after(given, i) == (n->turned == 0);
         if (!decides) {
             if ((i < given->count) && (change_at(given, i) <= moved(position, n->high))) {
                 decides = true;
@@ -266,7 +266,7 @@ static bool value_of_chain(const chaining *g, chain_reading *w, int64_t at, int6
 static int64_t first_from(changes *c, int64_t position, bool wanted)
 {
     const int32_t i = changes_until(c, position);
-    if (value_behind(c, i) == wanted) {
+    if (value_after(c, i) == wanted) {
         return position;
     }
     return (i < c->count) ? change_at(c, i) : NEVER_KNOWN;
@@ -292,7 +292,7 @@ static int64_t last_mattering(const chaining *g, chain_reading *w, int64_t behin
 {
     const int32_t i = changes_until(&w->excused, behind - 1);
     int64_t end = behind;
-    if (value_behind(&w->excused, i)) {
+    if (value_after(&w->excused, i)) {
         if (i == 0) {
             return INT64_MIN;
         }

@@ -383,7 +383,7 @@ int32_t changes_until(changes *c, int64_t position)
 }
 
 /* The value after the first `count` changes. */
-bool value_behind(const changes *c, int32_t count)
+bool value_after(const changes *c, int32_t count)
 {
     return c->begun != ((count & 1) == 1);
 }

@@ -53,7 +53,7 @@ void copy_changes(rv_monitor *m, changes *made, const changes *c);
 bool changes_agree(const changes *a, const changes *b);
 void clear_changes(changes *c, bool value);
 int32_t changes_until(changes *c, int64_t position);
-bool value_behind(const changes *c, int32_t count);
+bool value_after(const changes *c, int32_t count);
 void drop_changes(changes *c, int64_t position);
 
 /* ---- chain.c */
