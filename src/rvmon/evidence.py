@@ -28,7 +28,7 @@ from rvmon.reproducer import (
     expect_definitions_inside,
     files_under,
     imported_files,
-    placed,
+    path_inside,
 )
 from rvmon.session import Spec
 from rvmon.verdicts import LAW
@@ -329,16 +329,16 @@ def opened_evidence(path: str) -> Iterator[Kept]:
         try:
             for name, body in entries.items():
                 if name.startswith(("spec/", "binding/")):
-                    target = placed(folder, name)
+                    target = path_inside(folder, name)
                     target.parent.mkdir(parents=True, exist_ok=True)
                     target.write_bytes(body)
             # Marks the folder as a project, so that the specifications may import from all of it.
             (folder / "pyproject.toml").touch()
         except OSError as error:
             raise RvmonError(f"{path}: {error.strerror or error}") from None
-        specs = {robot: placed(folder, name) for robot, name in about.specs.items()}
+        specs = {robot: path_inside(folder, name) for robot, name in about.specs.items()}
         binding = about.judging.binding if about.judging is not None else None
         if binding is not None:
-            binding = str(placed(folder, binding))
+            binding = str(path_inside(folder, binding))
             expect_definitions_inside(folder, binding)
         yield Kept(about, entries, items, specs, binding)

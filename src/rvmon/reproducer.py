@@ -190,7 +190,7 @@ def opened_case(path: str) -> Iterator[Case]:
         folder.mkdir()
         try:
             with zipfile.ZipFile(path) as packed:
-                case = _described(packed)
+                case = _read_description(packed)
                 _unpack(packed, folder)
         except OSError as error:
             raise RvmonError(cannot_read(path, error)) from None
@@ -211,7 +211,7 @@ def opened_case(path: str) -> Iterator[Case]:
         # Marks the folder as a project, so that the specification may import from all of it.
         (folder / "pyproject.toml").touch()
         places = {
-            part: str(placed(folder, name))
+            part: str(path_inside(folder, name))
             for part in ("spec", "recording", "binding")
             if (name := getattr(case, part)) is not None
         }
@@ -221,7 +221,7 @@ def opened_case(path: str) -> Iterator[Case]:
         yield case
 
 
-def _described(packed: zipfile.ZipFile) -> Case:
+def _read_description(packed: zipfile.ZipFile) -> Case:
     """Read the description.
 
     Raises:
@@ -245,7 +245,7 @@ def _unpack(packed: zipfile.ZipFile, folder: Path) -> None:
         raise RvmonError(f"contains more than {MOST_FILES} files, and is no reproducer")
     left = MOST_BYTES
     for entry in entries:
-        target = placed(folder, entry.filename)
+        target = path_inside(folder, entry.filename)
         target.parent.mkdir(parents=True, exist_ok=True)
         with packed.open(entry) as file, target.open("xb") as made:
             # Count the bytes that are read: the size that an entry declares may be false.
@@ -256,7 +256,7 @@ def _unpack(packed: zipfile.ZipFile, folder: Path) -> None:
                 made.write(block)
 
 
-def placed(folder: Path, name: str) -> Path:
+def path_inside(folder: Path, name: str) -> Path:
     """The path in `folder` of a name in an archive.
 
     Raises:

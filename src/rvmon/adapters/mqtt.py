@@ -166,7 +166,7 @@ class MqttSource:
         """Offer a message; an old one was retained by the broker."""
         self._heard = self._objects.driver.now_ns
         if topic == _DROPPED:
-            self._hear_of_drops(payload)
+            self._take_count_of_drops(payload)
             return
         levels = topic.split("/")
         place = self._address.robot
@@ -179,7 +179,7 @@ class MqttSource:
         except TraceError as error:
             self._objects.lose(f"a message of {topic}", error, robot)
 
-    def _hear_of_drops(self, payload: bytes) -> None:
+    def _take_count_of_drops(self, payload: bytes) -> None:
         """Report an outage since the last count if the broker has dropped messages meanwhile."""
         count = int(payload) if payload.isdigit() else 0
         driver = self._objects.driver

@@ -41,8 +41,8 @@ class Ros1Source:
         self._subscribers: list[Any] = []
         self._links: dict[tuple[str, str], Mapping[str, str]] = {}  # by topic and node
         self._down: set[tuple[str, str]] = set()
-        self._ends = Event()
-        self._looking = Thread(target=self._look, name="rvmon.ros1", daemon=True)
+        self._stops = Event()
+        self._watching = Thread(target=self._watch_connections, name="rvmon.ros1", daemon=True)
         self._decoders: dict[tuple[str, str], tuple[Topic, Callable[[bytes], Any]]] = {}
 
     def __enter__(self) -> Ros1Source:
@@ -68,7 +68,7 @@ class Ros1Source:
             from rosgraph_msgs.msg import Clock
 
             self._subscribers.append(rospy.Subscriber(CLOCK, Clock, self._tick, tcp_nodelay=True))
-        self._looking.start()
+        self._watching.start()
         return self
 
     def _subscribe(self) -> None:
@@ -100,14 +100,14 @@ class Ros1Source:
             return
         self._feed.take(known, content)
 
-    def _look(self) -> None:
+    def _watch_connections(self) -> None:
         with self._feed.heard():
-            while not self._ends.wait(_TURN_S):
+            while not self._stops.wait(_TURN_S):
                 for subscriber in tuple(self._subscribers):
                     if subscriber.resolved_name != CLOCK:
-                        self._look_at(subscriber)
+                        self._check_connections(subscriber)
 
-    def _look_at(self, subscriber: Any) -> None:
+    def _check_connections(self, subscriber: Any) -> None:
         """Report an outage of a topic if one of its connections was lost or renewed."""
         topic = subscriber.resolved_name
         connections = tuple(subscriber.impl.connections or ())  # `None` once rospy has ended
@@ -120,7 +120,7 @@ class Ros1Source:
                 continue
             if link in self._down:
                 if header is not None or not self._publishes(topic, node):
-                    self._end_of(link)
+                    self._end_outage(link)
             elif header is not None:
                 self._feed.lose(topic, f"{node} sent nothing for a while", before=True)
             elif self._publishes(topic, node):
@@ -131,7 +131,7 @@ class Ros1Source:
                 del self._links[link]
         self._links |= {(topic, node): header for node, header in now.items()}
 
-    def _end_of(self, link: tuple[str, str]) -> None:
+    def _end_outage(self, link: tuple[str, str]) -> None:
         """Handle that a lost publisher is back or has left; the last one ends the outage."""
         del self._links[link]
         self._down.remove(link)
@@ -152,8 +152,8 @@ class Ros1Source:
             self._publisher.publish(judgement.to_json())
 
     def __exit__(self, *_: object) -> None:
-        self._ends.set()
-        self._looking.join()
+        self._stops.set()
+        self._watching.join()
         for subscriber in self._subscribers:
             subscriber.unregister()
         self._rospy.signal_shutdown("rvmon ends")

@@ -100,7 +100,7 @@ def add_commands(
 
 
 def _run(arguments: Namespace) -> int:
-    return run_tests(_as_asked(arguments), arguments)
+    return run_tests(_checked_campaign(arguments), arguments)
 
 
 def run_tests(campaign: Campaign, arguments: Namespace) -> int:
@@ -128,7 +128,7 @@ def _close(arguments: Namespace) -> int:
     from rvmon.cli.campaign_close import conduct_closing
     from rvmon.cli.campaign_run import is_as_expected
 
-    campaign = _as_asked(arguments)
+    campaign = _checked_campaign(arguments)
     robot = _one_robot(campaign, arguments)
     strategies: Sequence[str] = ()
     if arguments.strategy is not None:
@@ -145,13 +145,13 @@ def _one_test(arguments: Namespace) -> int:
     from rvmon.cli.campaign_run import replay, shrink_file
 
     work = replay if arguments.command == "replay" else shrink_file
-    return work(_judged_by(arguments), arguments)
+    return work(_with_timeout_and_spec(arguments), arguments)
 
 
 def _mutate(arguments: Namespace) -> int:
     from rvmon.cli.campaign_mutate import mutate
 
-    campaign = _judged_by(arguments)
+    campaign = _with_timeout_and_spec(arguments)
     strategies = names_of(arguments.strategy, tuple(campaign.strategies), "strategy")
     return mutate(campaign, _one_robot(campaign, arguments), strategies, arguments)
 
@@ -177,7 +177,7 @@ def _one_robot(campaign: Campaign, arguments: Namespace) -> str:
     return names_of(arguments.robot, tuple(campaign.robots), "robot")[0]
 
 
-def _judged_by(arguments: Namespace) -> Campaign:
+def _with_timeout_and_spec(arguments: Namespace) -> Campaign:
     """The campaign with the options `--timeout` and `--spec` applied."""
     campaign: Campaign = arguments.campaign(arguments)
     if getattr(arguments, "timeout", None) is not None:
@@ -192,14 +192,14 @@ def _judged_by(arguments: Namespace) -> Campaign:
     return replace(campaign, robots=robots)
 
 
-def _as_asked(arguments: Namespace) -> Campaign:
+def _checked_campaign(arguments: Namespace) -> Campaign:
     """The campaign with the options applied; wrong ones are refused before any test is played."""
     from rvmon.cdv.gate import refuse_unknown
 
     refuse_unknown(arguments.campaign(arguments))
     if arguments.junit is not None:
         refuse_no_file(arguments.junit)
-    return _judged_by(arguments)
+    return _with_timeout_and_spec(arguments)
 
 
 def _words(arguments: Namespace, *options: str) -> list[object]:

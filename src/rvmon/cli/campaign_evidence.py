@@ -23,7 +23,7 @@ from rvmon.session import Spec
 from rvmon.verdicts.serialise import VerdictRow
 
 
-def begun(campaign: Campaign, path: str) -> tuple[dict[str, bytes], list[str]]:
+def requirement_texts(campaign: Campaign, path: str) -> tuple[dict[str, bytes], list[str]]:
     """The archive entries of all requirements; read before and after the campaign is played."""
     refuse_no_file(path)
     specs = {name: robot.spec for name, robot in campaign.robots.items() if robot.spec is not None}
@@ -42,13 +42,13 @@ def write_campaign(
 ) -> None:
     """Write the evidence of a campaign.
 
-    `before` is what `begun` returned before the campaign; `words` are its command line.
+    `before` is what `requirement_texts` returned before the campaign; `words` are its command line.
 
     Raises:
         RvmonError: the requirements have changed since, or the file cannot be written.
     """
     campaign = results.plan.campaign
-    if begun(campaign, path) != before:
+    if requirement_texts(campaign, path) != before:
         raise RvmonError("--evidence: requirements have changed meanwhile: run the command again")
     tests = {_name(played.job): played.job.test for played in results.played}
     about = evidence.About(

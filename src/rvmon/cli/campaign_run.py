@@ -27,7 +27,7 @@ from rvmon.cdv.shrink import regression_test, removed, save_regression, shrink
 from rvmon.cdv.tables import RobotTables
 from rvmon.cdv.test import TestError, to_json
 from rvmon.cdv.test import load as load_test
-from rvmon.cli.campaign_evidence import begun, write_campaign
+from rvmon.cli.campaign_evidence import requirement_texts, write_campaign
 from rvmon.cli.output import bar, busy, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.files import output_folder, refuse_no_file, write_file, write_whole
@@ -92,7 +92,7 @@ def conduct(
     planned = len(chosen.jobs())
     if not planned:
         _refuse_nothing(chosen)
-    texts = None if arguments.evidence is None else begun(campaign, arguments.evidence)
+    texts = None if arguments.evidence is None else requirement_texts(campaign, arguments.evidence)
     command, *others = words
     amount = ["--tests", arguments.tests, "--seed", arguments.seed]
     if arguments.suite is not None:

@@ -153,7 +153,7 @@ def is_recording(path: str) -> bool:
         return False
 
 
-def begun(
+def read_inputs(
     arguments: argparse.Namespace, traces: Sequence[str]
 ) -> tuple[dict[str, bytes], list[str], dict[str, str]]:
     """The result of `texts_of`, and the SHA-256 of the recordings by path.
@@ -180,9 +180,9 @@ def write_run(
     """Write the evidence of recordings.
 
     Raises:
-        RvmonError: an input has changed since `begun`, or the file cannot be written.
+        RvmonError: an input has changed since `read_inputs`, or the file cannot be written.
     """
-    if begun(arguments, list(before[2])) != before:
+    if read_inputs(arguments, list(before[2])) != before:
         raise RvmonError("--evidence: an input has changed meanwhile: run the command again")
     entries, (main, *binding), recordings = before
     how = msgspec.convert(arguments, evidence.Judging, from_attributes=True)

@@ -56,9 +56,9 @@ def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
     _refuse_places(arguments, traces, spec)
     before = None
     if arguments.evidence is not None:
-        from rvmon.cli.evidence import begun, write_run
+        from rvmon.cli.evidence import read_inputs, write_run
 
-        before = begun(arguments, traces)
+        before = read_inputs(arguments, traces)
     must_trigger = ids_of(arguments.require_triggered or None, spec)
     known = NONE_KNOWN
     if arguments.known is not None:
@@ -99,7 +99,7 @@ def _judged(
         writes_json=arguments.format == "json",
     )
     shards = _shards(arguments)
-    begun = None
+    kept = None
     if arguments.out is None or (len(traces) == 1 and not (arguments.shard or shards)):
         recordings = list(judge(spec, traces, options))  # no journal: nothing to resume
         if case is not None:
@@ -110,7 +110,7 @@ def _judged(
         reading = reading_words(arguments)
         if arguments.binding is not None:
             reading.append(Path(arguments.binding).read_text("utf-8"))
-        begun = unfinished(
+        kept = unfinished(
             arguments.out,
             traces,
             spec,
@@ -119,16 +119,16 @@ def _judged(
             resume=arguments.resume,
             shards=shards,
         )
-        left = [trace for trace in traces if trace not in begun.known]
-        if begun.known:
+        left = [trace for trace in traces if trace not in kept.known]
+        if kept.known:
             warn(f"{len(traces) - len(left)} of {len(traces)} recordings were evaluated before")
-        recordings = list(begun.judged(traces, judge(spec, left, options)))
+        recordings = list(kept.judged(traces, judge(spec, left, options)))
     if arguments.out is not None:
         write_results(arguments.out, spec, recordings)
     if arguments.shard is not None:
         warn(f"{arguments.out}: --resume instead of --shard joins the shards in this folder")
-    elif begun is not None:
-        begun.remove()
+    elif kept is not None:
+        kept.remove()
     return recordings
 
 

@@ -34,7 +34,7 @@ def run_verify(arguments: argparse.Namespace) -> int:
         warn(rendered(network.warnings))
     budget = budget_of(arguments)
     if arguments.spec is not None:
-        with _shown() as watch:
+        with _progress_shown() as watch:
             return check_spec(network, arguments, budget, watch)
     if arguments.suite is not None:
         return _show_suite(network, arguments, budget)
@@ -55,7 +55,7 @@ def _decide(network: Network, arguments: argparse.Namespace, budget: Budget) -> 
     data: dict[str, list[dict[str, Any]]] = {"queries": [], "simulated": [], "extremes": []}
     in_words = arguments.format == "text"
     failed = False
-    with _shown() as watch:
+    with _progress_shown() as watch:
         for extended, query in chosen_queries(network, arguments.query):
             match query.formula:
                 case Chance() | Mean():
@@ -152,7 +152,7 @@ def _show_suite(network: Network, arguments: argparse.Namespace, budget: Budget)
     from rvmon.models.search.suite import Criterion, build_suite, item_text
 
     criterion = Criterion(arguments.suite)
-    with _shown() as watch:
+    with _progress_shown() as watch:
         suite = build_suite(network, criterion, budget=budget, watch=watch)
     if arguments.format == "json":
         say_json(json.dumps(describe.suite_data(network, suite), indent=2))
@@ -171,7 +171,7 @@ def _show_suite(network: Network, arguments: argparse.Namespace, budget: Budget)
 
 
 @contextmanager
-def _shown() -> Iterator[Watch | None]:
+def _progress_shown() -> Iterator[Watch | None]:
     """Show the progress of a search in a line on standard error, if that is a terminal."""
     with busy("starting") as told:
         yield told and (

@@ -117,7 +117,7 @@ def _watch_mqtt(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Liv
     from rvmon.adapters.mqtt import MqttSource, address_of
 
     address = address_of(arguments.source)
-    live, hear = _live_here(arguments, spec, shown, _own_clock())
+    live, hear = _live_and_listeners(arguments, spec, shown, _own_clock())
     objects = JsonObjects(live)
     source = MqttSource(objects, address, verdicts=arguments.publish)
     hear(source.publish)
@@ -140,7 +140,7 @@ def _watch_topics(arguments: argparse.Namespace, spec: Spec, shown: Output) -> L
         if arguments.realtime is not None:
             raise RvmonError(f"--realtime: the time comes from {CLOCK} already: leave it out")
         followed = SimulatedClock()
-    live, hear = _live_here(arguments, spec, shown, followed or _own_clock())
+    live, hear = _live_and_listeners(arguments, spec, shown, followed or _own_clock())
     feed = MessageFeed(live, spec.schema, clock=followed)
     source: Ros1Source | Ros2Source | DdsSource
     if domain is not None:
@@ -195,7 +195,7 @@ _SOURCES: dict[str, tuple[Callable[..., Live], dict[str, str]]] = {
 each with the alternative."""
 
 
-def _live_here(
+def _live_and_listeners(
     arguments: argparse.Namespace, spec: Spec, shown: Output, clock: Clock
 ) -> tuple[Live, Callable[[Callable[[Judgement], object]], object]]:
     """A running monitor, and the function that registers a further listener for verdicts."""

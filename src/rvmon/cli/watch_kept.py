@@ -88,9 +88,9 @@ def watch_kept(
             warn(f"{arguments.state}: the run continues{how}")
         try:
             if is_file:
-                lines = _behind_taken(monitor, lines, arguments)
+                lines = _after_judged_lines(monitor, lines, arguments)
             elif monitor.taken:
-                lines = _behind_gap(monitor, lines)
+                lines = _after_gap(monitor, lines)
             _feed(monitor, spec, lines)
         finally:
             # If a verdict could not be printed, the next process reports it from the old file.
@@ -128,7 +128,7 @@ def no_line(source: str) -> RvmonError:
     return RvmonError(f"error: {source}: there is no line: nothing was evaluated")
 
 
-def _behind_taken(
+def _after_judged_lines(
     monitor: DurableMonitor, lines: Iterable[bytes], arguments: argparse.Namespace
 ) -> Iterator[bytes]:
     """The lines of a file, with blanks instead of those that were judged before.
@@ -156,7 +156,7 @@ def _behind_taken(
         raise other
 
 
-def _behind_gap(monitor: DurableMonitor, lines: Iterable[bytes]) -> Iterator[bytes]:
+def _after_gap(monitor: DurableMonitor, lines: Iterable[bytes]) -> Iterator[bytes]:
     """The lines of a pipe; before the first, reports a loss, as no process read meanwhile."""
     has_come = False
     for line in lines:

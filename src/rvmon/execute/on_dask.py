@@ -70,13 +70,13 @@ class _Pool:
         # A task rather than scattered data, because Dask repeats a task whose worker is lost.
         self._begin = client.submit(bytes, begin, key=f"{self._name}-begin")
         self._tasks: dict[Any, tuple[int, bytes]] = {}
-        self._begun: dict[int, tuple[float, str]] = {}
+        self._starts: dict[int, tuple[float, str]] = {}
         self._finished: SimpleQueue[Any] = SimpleQueue()
         self._suspects: deque[tuple[int, bytes]] = deque()
         """Tasks whose workers were lost repeatedly; each is tried once more while no other runs."""
         self._alone: int | None = None
         self._done: dict[int, tuple[bool, bytes]] = {}
-        client.subscribe_topic(self._name, self._note)
+        client.subscribe_topic(self._name, self._note_start)
 
     def results(self) -> Iterator[Any]:
         """The results in the order of the tasks."""
@@ -103,7 +103,7 @@ class _Pool:
             elif self._tasks:
                 with suppress(Empty):
                     self._take(self._finished.get(timeout=_POLL_S))
-                self._end_late()
+                self._restart_late_workers()
             elif threads:
                 return
             else:
@@ -128,15 +128,15 @@ class _Pool:
         self._tasks[future] = (number, task)
         future.add_done_callback(self._finished.put)
 
-    def _note(self, event: tuple[float, tuple[int, str]]) -> None:
+    def _note_start(self, event: tuple[float, tuple[int, str]]) -> None:
         """Handle the event that a worker starts a task: remember the time and the worker."""
         number, worker = event[1]
-        self._begun[number] = (time.monotonic(), worker)
+        self._starts[number] = (time.monotonic(), worker)
 
     def _take(self, future: Any) -> None:
         from distributed import CancelledError, KilledWorker
 
-        if future not in self._tasks:  # cancelled by `_end_late`
+        if future not in self._tasks:  # cancelled by `_restart_late_workers`
             return
         number, task = self._tasks.pop(future)
         try:
@@ -148,18 +148,18 @@ class _Pool:
             # brought down. So it is no culprit until it is lost when run alone.
             else:
                 self._suspects.append((number, task))
-        self._begun.pop(number, None)
+        self._starts.pop(number, None)
 
-    def _end_late(self) -> None:
+    def _restart_late_workers(self) -> None:
         """Restart the workers whose tasks exceed their timeout."""
         if self._work.timeout_s is None:
             return
         for future, (number, task) in [*self._tasks.items()]:
-            since, worker = self._begun.get(number, (time.monotonic(), ""))
+            since, worker = self._starts.get(number, (time.monotonic(), ""))
             if time.monotonic() - since <= self._work.timeout_s or future.done():
                 continue
             if worker not in self._client.nthreads():  # lost: the task waits for another worker
-                del self._begun[number]
+                del self._starts[number]
                 continue
             del self._tasks[future]
             future.cancel(force=True)
@@ -175,7 +175,7 @@ class _Pool:
             self._done[number] = (True, pickle.dumps(error))
             return
         now = time.monotonic()
-        ended = Ended(timed_out, why, now - self._begun.get(number, (now, ""))[0])
+        ended = Ended(timed_out, why, now - self._starts.get(number, (now, ""))[0])
         result = self._work.instead(pickle.loads(task), ended)  # noqa: S301 - packed here
         self._done[number] = (False, pickle.dumps(result))
 

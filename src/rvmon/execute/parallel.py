@@ -151,7 +151,7 @@ class _Pool:
             }
             if not busy:
                 return
-            answered = wait(busy, self._patience(busy.values()))
+            answered = wait(busy, self._seconds_to_wait(busy.values()))
             for connection in answered:
                 self._take(busy[connection])
             for connection in busy.keys() - answered:
@@ -162,10 +162,10 @@ class _Pool:
         resting = [worker for worker in self._workers if not worker.tasks]
         while resting or len(self._workers) < self._jobs:
             size = min(resting[-1].size, self._share_of_rest()) if resting else 1
-            chunk = list(islice(self._left(), size))
+            chunk = list(islice(self._remaining_tasks(), size))
             if not chunk:
                 return
-            worker = resting.pop() if resting else self._begun()
+            worker = resting.pop() if resting else self._start_worker()
             worker.tasks = chunk
             worker.since = time.monotonic()
             with suppress(OSError):  # the worker was killed: `_take` will notice
@@ -177,7 +177,7 @@ class _Pool:
         left = len(self._returned) + length_hint(self._tasks, unknown)
         return max(1, left // (2 * self._jobs))
 
-    def _begun(self) -> _Worker:
+    def _start_worker(self) -> _Worker:
         from rvmon.execute.worker import serve
 
         # Linux sends the parent-death signal when the thread that started the process ends, so it
@@ -190,7 +190,7 @@ class _Pool:
         arguments = (there, here, self._work.begin, parent, begun)
         process = self._context.Process(target=serve, args=arguments, daemon=True)
         try:
-            with _without_interrupts():
+            with _interrupts_blocked():
                 process.start()
         except OSError as error:
             message = f"no process can be started ({error.strerror}): use fewer (jobs)"
@@ -199,7 +199,7 @@ class _Pool:
         self._workers.append(_Worker(process, here, begun))
         return self._workers[-1]
 
-    def _left(self) -> Iterator[tuple[int, bytes]]:
+    def _remaining_tasks(self) -> Iterator[tuple[int, bytes]]:
         """The tasks that no worker has, in ascending order of number."""
         # First the tasks that workers gave back: their numbers are lower, and the results, which
         # come in order, wait for the lowest.
@@ -244,7 +244,7 @@ class _Pool:
             worker.process.kill()
             self._dismiss(worker)
 
-    def _patience(self, busy: Iterable[_Worker]) -> float | None:
+    def _seconds_to_wait(self, busy: Iterable[_Worker]) -> float | None:
         """Seconds until a timeout can expire, also that of a task that starts meanwhile."""
         if self._work.timeout_s is None:
             return None
@@ -285,7 +285,7 @@ class _Pool:
         why = (
             f"it took more than {self._work.timeout_s:g} s"
             if timed_out
-            else _end_of(worker.process)
+            else _how_it_ended(worker.process)
         )
         ended = Ended(timed_out, why, seconds)
         result = self._work.instead(pickle.loads(task), ended)  # noqa: S301 - packed here
@@ -307,7 +307,7 @@ class _Pool:
         self._tasks = iter(())
 
 
-def _end_of(process: BaseProcess) -> str:
+def _how_it_ended(process: BaseProcess) -> str:
     code = process.exitcode
     if code is None or code >= 0:
         return f"its process ended, with exit code {code}"
@@ -319,7 +319,7 @@ def _end_of(process: BaseProcess) -> str:
 
 
 @contextmanager
-def _without_interrupts() -> Iterator[None]:
+def _interrupts_blocked() -> Iterator[None]:
     """Block interrupts, so that a process started here is never interrupted before it ignores them.
 
     Ctrl-C reaches all processes of a terminal; only the parent is to react to it.

@@ -167,7 +167,7 @@ class Robot:
         self._since: int | None = None
         self.last: int | None = None  # the instant of the latest sample, ns
         self._why: Health | None = None
-        self._is_to_lose_again = bool(self._down)
+        self._has_outages_to_repeat = bool(self._down)
 
     def _hear(self, attempt: Attempt) -> None:
         self._counts[attempt.requirement, attempt.verdict] += 1
@@ -200,7 +200,7 @@ class Robot:
         Returns:
             Why it was refused, which makes its names unknown at its instant; "" if it was accepted.
         """
-        self._lose_again(t)
+        self._repeat_outages(t)
         is_too_late = self._monitor.is_too_late(t)
         try:
             self._monitor.step_ns(t, values)
@@ -209,28 +209,28 @@ class Robot:
             self._lost += 1
             names = self._declared(values)
             if isinstance(error, TimeOrderError):
-                # No `_come_to`: the current instant is already later.
+                # No `_note_instant`: the current instant is already later.
                 self._monitor.late_ns(names, t)
             else:
                 self._monitor.lose_ns(names, t, t, why="refused")
-                self._come_to(t)
+                self._note_instant(t)
             return self._refusal
         if is_too_late:
             self._refusal = f"sample at {format_ticks(t)}: it exceeds the allowed delay"
             self._lost += 1
             return self._refusal
         self._samples += 1
-        self._come_to(t)
+        self._note_instant(t)
         return ""
 
     def drop(self, dropped: Dropped) -> None:
         """Tell the monitor of the outage that dropped samples are."""
         self._lost += dropped.count
-        self._lose_again(dropped.first)
+        self._repeat_outages(dropped.first)
         why = "came faster than they were evaluated"
         names = self._declared(dropped.names)
         self._monitor.lose_ns(names, dropped.first, dropped.last, why=why)
-        self._come_to(dropped.last)
+        self._note_instant(dropped.last)
 
     def hear(self, gap: Gap) -> None:
         """Pass a report on an outage to the monitor."""
@@ -241,22 +241,22 @@ class Robot:
                 {} if names is None else {n: w for n, w in self._down.items() if n not in names}
             )
             self._monitor.found_ns(names, gap.since)
-            self._come_to(gap.since)
+            self._note_instant(gap.since)
             return
         self._lost += 1
         if gap.kind is OutageReport.MISSED:
             self._monitor.miss(names, why=gap.why)
             return
-        self._lose_again(gap.since)
+        self._repeat_outages(gap.since)
         if gap.until is None:
             self._down |= dict.fromkeys((None,) if names is None else names, gap.why)
         self._monitor.lose_ns(names, gap.since, gap.until, why=gap.why)
-        self._come_to(gap.since if gap.until is None else gap.until)
+        self._note_instant(gap.since if gap.until is None else gap.until)
 
-    def _lose_again(self, t: int) -> None:
+    def _repeat_outages(self, t: int) -> None:
         """Repeat the outages that were open when the previous run ended, at `t`."""
-        if self._is_to_lose_again:
-            self._is_to_lose_again = False
+        if self._has_outages_to_repeat:
+            self._has_outages_to_repeat = False
             for name, why in self._down.items():
                 self._monitor.lose_ns(None if name is None else self._declared([name]), t, why=why)
 
@@ -264,7 +264,7 @@ class Robot:
         checked = self._watch.spec.checked
         return [name for name in names if name in checked.signals or name in checked.events]
 
-    def _come_to(self, t: int) -> None:
+    def _note_instant(self, t: int) -> None:
         """Advance the bookkeeping to the instant of a sample or of a loss."""
         self.last = t if self.last is None else max(self.last, t)
         self._since = t if self._since is None else self._since

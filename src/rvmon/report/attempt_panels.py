@@ -118,10 +118,10 @@ def nearest_passing(
         nearest = int(distances.argmin())
         if best is None or distances[nearest] < best[0]:
             best = (float(distances[nearest]), candidate, passing[nearest])
-    return None if best is None else _laid_over(best[1], best[2], attempt)
+    return None if best is None else _aligned_reference(best[1], best[2], attempt)
 
 
-def _laid_over(candidate: Candidate, passed: Attempt, failed: Attempt) -> ReferenceAttempt:
+def _aligned_reference(candidate: Candidate, passed: Attempt, failed: Attempt) -> ReferenceAttempt:
     shift, (run, tracks) = failed.triggered - passed.triggered, candidate
     moved = (replace(track, changes=track.changes.shifted(shift)) for track in tracks)
     end = run.report.end
@@ -156,7 +156,7 @@ def _distances(mine: ValuesAt, others: ValuesAt, *, numbers: bool) -> NDArray[An
 
 def _first(track: Track, view: View, shift: int) -> float:
     """The place of the first occurrence of an event in the view; 1 if it does not occur."""
-    index = track.changes.behind(view.start - shift - 1)
+    index = track.changes.count_until(view.start - shift - 1)
     if index == len(track.changes):
         return 1.0
     return min(view.fraction(track.changes[index][0] + shift), 1.0)
@@ -202,9 +202,9 @@ class _Panels:
                 outages=samples.outages,
             )  # fmt: skip
         # The shown attempts of each requirement, with their late responses and views.
-        self._views = {name: self._seen(name, attempts) for name, attempts in shown.items()}
+        self._views = {name: self._with_views(name, attempts) for name, attempts in shown.items()}
 
-    def _seen(
+    def _with_views(
         self, name: str, attempts: Sequence[Attempt]
     ) -> Sequence[tuple[Attempt, int | None, View]]:
         report, late = self._content.run.report, self._late(name, attempts)

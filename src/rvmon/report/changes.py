@@ -82,7 +82,7 @@ class Course(Sequence[tuple[int, Scalar]]):
         times, values, hidden = self._columns
         return Course(times + ticks, values, hidden)
 
-    def behind(self, instant: int) -> int:
+    def count_until(self, instant: int) -> int:
         """The number of changes up to an instant, inclusive."""
         return int(self._columns[0].searchsorted(instant, "right"))
 

@@ -118,12 +118,12 @@ class Track(Struct, frozen=True):
 
     def value_at(self, instant: int) -> Scalar:
         """A signal's value at an instant; `None` if it is unknown."""
-        index = self.changes.behind(instant)
+        index = self.changes.count_until(instant)
         return self.changes[index - 1][1] if index else None
 
     def between(self, first: int, last: int) -> Course:
         """The changes from one instant to another, both included."""
-        return self.changes[self.changes.behind(first - 1) : self.changes.behind(last)]
+        return self.changes[self.changes.count_until(first - 1) : self.changes.count_until(last)]
 
 
 def signal_texts(tracks: Iterable[Track], instant: int) -> dict[str, str]:

@@ -212,7 +212,7 @@ def test_where_nothing_comes_a_look_sees_what_came_last(at):
     samples = [Sample(t, {"gap": t / 10}) for t in (0, 2, 5, 10, 12, 20, 22)]
     whole = changes_of(SPEC, samples)["gap"].ended()
     changes = changes_of(SPEC, samples, Looks([(at, at + 2)]))["gap"].ended()
-    assert changes[changes.behind(at) - 1] == whole[whole.behind(at) - 1]
+    assert changes[changes.count_until(at) - 1] == whole[whole.count_until(at) - 1]
     assert len(changes) < len(whole)
 
 
