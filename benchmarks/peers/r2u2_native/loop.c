@@ -1,5 +1,5 @@
-/* R2U2's monitor over rows in memory: the CPU time of the loop, and per formula the row at which it
- * first was false. Rows are bytes, one for each signal. */
+/* Runs R2U2's monitor over rows in memory, and prints the CPU time of the loop and, for each formula,
+ * the first row at which it was false. A row has one byte per signal. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>

@@ -3,9 +3,9 @@
 //   monitor memory|csv FILE PATTERN...
 //
 // A row is one byte: bit i is the column of the letter LETTERS[i]; a column is named `v_` and that
-// letter. `memory` reads FILE (bytes) whole, then measures the monitors' loop and prints CPU ns and the
-// first violated row per pattern; `csv` (a header, then `t,0,1,…`) judges while it reads, as a program
-// would that is called once.
+// letter. `memory` reads the whole FILE (bytes), then times only the monitors' loop, and prints CPU ns
+// and the first violated row per pattern. `csv` (a header, then `t,0,1,…`) judges while it reads, like a
+// program that is called once.
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
