@@ -96,17 +96,15 @@ def directed(_count: int, _seed: int) -> list[Walk]:
 
 
 UNREACHABLE = {
-    "it stays where it has arrived": {
+    "it stays at its goal": {
         "transitions": ("arrived → drive", "arrived → slow", "arrived → wait")
     },
-    "nobody comes or goes 1.5 m in a step of 50 ms": {
-        "transitions": ("drive → wait", "wait → drive")
-    },
+    "nobody moves 1.5 m in a step of 50 ms": {"transitions": ("drive → wait", "wait → drive")},
     "it is slow before anybody is near, and brakes in 0.2 s": {
         "situation": ("near × fast", "beside × slow"),
         "B2": ("just before the deadline", "at the deadline"),
     },
-    "it begins far from its goal": {"`B3` edges": ("start → P",)},
+    "it starts far from its goal": {"`B3` edges": ("start → P",)},
 }
 
 
