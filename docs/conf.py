@@ -1,4 +1,4 @@
-"""How Sphinx makes the documentation site: `make docs` writes it to out/docs."""
+"""Sphinx configuration of the documentation site, which `make docs` writes to out/docs."""
 
 import sys
 from pathlib import Path
@@ -23,12 +23,12 @@ html_copy_source = False
 html_show_copyright = False
 html_show_sourcelink = False
 
-myst_heading_anchors = 4  # the anchors of forges
+myst_heading_anchors = 4  # the same anchors as on code hosts
 myst_enable_extensions = ["deflist"]
 copybutton_prompt_text = "$ "
 copybutton_line_continuation_character = "\\"
 
-default_role = "literal"  # docstrings put code between single backticks
+default_role = "literal"  # docstrings use single backticks for code
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_typehints_format = "short"

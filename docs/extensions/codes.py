@@ -1,4 +1,4 @@
-"""The pages of all diagnostic codes as one, behind a table of them."""
+"""One page of all diagnostic codes, with a table at its start."""
 
 from __future__ import annotations
 

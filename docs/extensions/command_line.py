@@ -1,4 +1,4 @@
-"""The commands as Markdown, from the parsers that read them."""
+"""The reference of the commands as Markdown, generated from their parsers."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def _link(name: str) -> str:
 
 
 def _subcommands(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
-    """The parsers without subcommands of their own, each once."""
+    """All parsers that have no subcommands, each once."""
     for action in parser._actions:
         if isinstance(action, argparse._SubParsersAction):
             for command in dict.fromkeys(action.choices.values()):
@@ -61,7 +61,7 @@ def _section(parser: argparse.ArgumentParser) -> Iterator[str]:
 
 
 def _named(action: argparse.Action) -> str:
-    """How an option or argument is written."""
+    """The notation of an option or argument."""
     value = action.metavar or ("" if action.nargs == 0 else action.dest.upper())
     if action.choices is not None and action.metavar is None:
         value = "{" + ",".join(map(str, action.choices)) + "}"
@@ -77,7 +77,7 @@ def _help(parser: argparse.ArgumentParser, action: argparse.Action) -> str:
 
 
 def _examples(epilog: str) -> str:
-    """What stands below the help: commands behind the word `example`, else words."""
+    """The text below the help: commands after the word `example`, otherwise prose."""
     shown = re.fullmatch(r"examples?:\s+(.*)", epilog, re.DOTALL)
     if shown is None:
         return f"{_escaped(epilog)}\n"
@@ -86,7 +86,7 @@ def _examples(epilog: str) -> str:
 
 
 def _escaped(text: str) -> str:
-    """Text that Markdown shows as it stands; options, and what is between backticks, as code."""
+    """Escape text for Markdown; options and text in backticks become code."""
     parts = text.split("`")
     for index in range(0, len(parts), 2):
         for sign in "\\*_<[":

@@ -1,4 +1,4 @@
-"""EBNF of a Lark grammar, in the notation of the W3C: read from the `.lark` file, never copied."""
+"""Convert a `.lark` grammar to EBNF in the notation of the W3C."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def productions(text: str) -> Iterator[tuple[str, str]]:
 
 
 def _shown(name: str, names: list[str]) -> str:
-    """A name without the signs that tell Lark how to build its tree, if no other is called so."""
+    """The name without the prefixes with which Lark builds trees, if the result is unique."""
     plain = name.strip("?!").removeprefix("_")
     return name if plain != name and plain in names else plain
 
@@ -85,7 +85,7 @@ def _repeated(inner: str, sign: str) -> str:
 
 
 def _literal(text: str) -> str:
-    """Words and signs in quotes; a regular expression of anything else as it is."""
+    """Words and signs in quotes; any other regular expression unchanged."""
     if text.startswith('"'):
         return f"'{text[1:-1]}'"
     pattern = _LOOKAHEAD.sub("", text[1:-1])

@@ -1,4 +1,4 @@
-"""What Sphinx asks of this folder: parts of pages that are made from the code at each build."""
+"""Sphinx extension: directives for parts of pages that are generated from the code."""
 
 from __future__ import annotations
 
@@ -31,22 +31,22 @@ _MADE: dict[str, Callable[[], str]] = {
 
 
 class Made(SphinxDirective):
-    """`{made} NAME`: Markdown that the function of that name writes."""
+    """`{made} NAME` inserts the Markdown that the function registered as NAME returns."""
 
     required_arguments = 1
 
     def run(self) -> list[nodes.Node]:
-        """The nodes of that Markdown."""
+        """The nodes of the generated Markdown."""
         return self.parse_text_to_nodes(_MADE[self.arguments[0]](), allow_section_headings=True)
 
 
 class Timeline(SphinxDirective):
-    """`{timeline}` draws the specification and the recording within it, and shows both."""
+    """`{timeline}` shows the specification and recording in its body, and draws the verdicts."""
 
     has_content = True
 
     def run(self) -> list[nodes.Node]:
-        """The picture, and the text that it was made from."""
+        """The nodes of the text, and of the picture."""
         text = "\n".join(self.content)
         specification, _, table = text.partition("\n---\n")
         source = self.parse_text_to_nodes(f"```rv\n{specification}\n```\n\n```csv\n{table}\n```\n")
@@ -56,7 +56,7 @@ class Timeline(SphinxDirective):
 def short_names(
     _app: Sphinx, _what: str, _name: str, _of: object, _options: object, *shown: str | None
 ) -> tuple[str, str | None] | None:
-    """A signature without the modules of its types, as `autodoc_typehints_format` has others."""
+    """Remove modules from the types of a signature, like `autodoc_typehints_format` elsewhere."""
     signature, result = shown
     return (re.sub(r"~(\w+\.)+", "", signature), result) if signature else None
 

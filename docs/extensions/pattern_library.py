@@ -1,4 +1,4 @@
-"""The library of patterns as Markdown: what each says, its formula, runs with their verdicts."""
+"""The pattern library as Markdown: meaning, formula, and runs with verdicts of each pattern."""
 
 from __future__ import annotations
 

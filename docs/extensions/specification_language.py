@@ -1,4 +1,4 @@
-"""The grammar and the words of specifications, and how the site highlights them."""
+"""Grammar, words and tables of the specification language, and its syntax highlighting."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _READ_AS = {
     "UNIT": "unit-name",
     "COMPOUND": "compound-unit",
 }
-"""What fills the grammar's places that are made of all words of the language."""
+"""Replacements for the parts of the grammar that are built from all words of the language."""
 
 
 def grammar() -> str:
@@ -42,7 +42,7 @@ def model_grammar() -> str:
 
 
 def ebnf(text: str) -> str:
-    """A grammar of Lark as a block of EBNF."""
+    """A Lark grammar as a block of EBNF."""
     shown = [
         f"{name} ::= " + right.replace("\n", "\n" + " " * (len(name) + 3))
         for name, right in productions(text)
@@ -51,7 +51,7 @@ def ebnf(text: str) -> str:
 
 
 def operations() -> str:
-    """What operations on numbers take and yield, from their table."""
+    """The table of operations on numbers: arguments and results."""
     rows = [
         f"| `{op}` | {op.entry.unit.value} | {op.entry.exactness} |"
         for op in NumericOp
@@ -61,7 +61,7 @@ def operations() -> str:
 
 
 def windows() -> str:
-    """What is measured over the last D, from its table."""
+    """The table of window functions."""
     rows = [
         f"| `{one}` | {one.of.value}; {one.dimension.value} | {one.doc} | {one.unknown} "
         f"| {one.memory} |"
@@ -72,7 +72,7 @@ def windows() -> str:
 
 
 def reserved_words() -> str:
-    """The words of the language as Markdown, from the tables that the parser is made of."""
+    """The words of the language as Markdown, from the tables of the parser."""
     kinds = {
         "Never names, but in backticks": RESERVED,
         "Operators between formulas; names where an operand stands": INFIX_WORDS,
@@ -88,12 +88,12 @@ def _listed(found: Iterable[str]) -> str:
 
 
 class SpecificationLexer(RegexLexer):
-    """Colours of `.rv` files."""
+    """Pygments lexer of `.rv` files."""
 
     name = "rvmon specification"
     aliases = ("rv",)
     filenames = ("*.rv",)
-    tokens = {  # noqa: RUF012 - so Pygments wants it
+    tokens = {  # noqa: RUF012 - required by Pygments
         "root": [
             (r"\s+", Whitespace),
             (r"#[^\n]*", Comment.Single),

@@ -1,4 +1,4 @@
-"""A recording and what rvmon says of it, drawn: the attempts are judged when the site is built."""
+"""Draw a recording and its attempts, which rvmon judges when the site is built."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def _value(cell: str) -> bool | None:
 def _levels(
     changes: Sequence[tuple[float, bool | None]], times: Sequence[float], scale: Scale
 ) -> Iterator[str]:
-    """High where it is true, low where it is false, a question mark where it is not known."""
+    """A track: high where true, low where false, a question mark where unknown."""
     born = changes[0][0] if changes else times[-1]
     given = [(times[0], None), *changes] if born > times[0] else list(changes)
     stretches = [
@@ -86,7 +86,7 @@ def _events(
 
 
 def _bar(triggered: int, decided: int | None, verdict: str, end: float, scale: Scale) -> str:
-    """An attempt from its trigger to its decision; at one instant, a line."""
+    """The bar of an attempt from trigger to decision; a line if both are the same instant."""
     left = scale(triggered / _SECOND)
     right = max(scale(end if decided is None else decided / _SECOND), left + 2)
     colour = _COLOURS[verdict]

@@ -25,16 +25,16 @@ from rvmon.trace.time import TICKS_PER_SECOND
 
 TESTS = ("released", "mutant-releases-anyway")
 SHOWN = ("informed", "grip_closed", "sensed", "decided", "released")
-"""Events whose names appear in the scene."""
+"""Events whose names are shown in the scene."""
 
 FIRST_S, LAST_S = 8.0, 30.0
 SPEED = 2.0
 HOLD_S = 3.0
-"""Seconds for which the end is shown before it begins again."""
+"""Seconds for which the end is shown before the animation restarts."""
 
 LENGTH_S = (LAST_S - FIRST_S) / SPEED + HOLD_S
 FRAME_S = 0.1
-"""Between two frames of a film; none is taken while the scene stands still."""
+"""Time between two frames; no frames are made while nothing moves."""
 
 PANEL, SCENE_HEIGHT, ROW = 440, 256, 44
 STYLE = """
@@ -74,13 +74,13 @@ class Lamp:
 
 
 class Sheet:
-    """Animations of one picture as CSS: whoever prefers no motion sees the end."""
+    """The CSS animations of one picture; with reduced motion only the end is shown."""
 
     def __init__(self) -> None:
         self._rules: list[str] = []
 
     def animate(self, frames: Iterable[tuple[float, str]], *, steps: bool = False) -> str:
-        """The class of what has these declarations at these seconds of the run."""
+        """The CSS class of elements with these declarations at these seconds of the run."""
         name = f"a{len(self._rules)}"
         keyed = list(frames)
         keys = "".join(f"{_percent(t)}{{{style}}}" for t, style in keyed)
@@ -201,7 +201,7 @@ def _row(sheet: Sheet, lamp: Lamp, y: int) -> ET.Element:
 
 
 def _messages(sheet: Sheet, events: list[tuple[float, str]]) -> Iterator[ET.Element]:
-    """What the robot published last."""
+    """The text of the robot's last message."""
     ends = [t for t, _ in events[1:]] + [LAST_S + HOLD_S * SPEED]
     for (t, event), end in zip(events, ends, strict=True):
         frames = [(FIRST_S, "opacity:0"), (t, "opacity:1"), (end, "opacity:0")]
@@ -210,7 +210,7 @@ def _messages(sheet: Sheet, events: list[tuple[float, str]]) -> Iterator[ET.Elem
 
 
 def _cursor(sheet: Sheet, top: int) -> Iterator[ET.Element]:
-    """What is still to come, covered; it ends at the instant that is shown."""
+    """A cover over the future part of the tracks, up to the instant shown."""
     way = _across(LAST_S) - _across(FIRST_S)
     frames = [(FIRST_S, "transform:translate(0px)"), (LAST_S, f"transform:translate({way}px)")]
     moves = sheet.animate(frames)
@@ -228,7 +228,7 @@ def _cursor(sheet: Sheet, top: int) -> Iterator[ET.Element]:
 def _moves(
     frames: Sequence[tuple[int, tuple[float, ...]]], body: int
 ) -> Iterator[tuple[float, str]]:
-    """Where a body is, without the instants between which it stands still."""
+    """The positions of a body over time, without instants at which it does not move."""
     at, shown = FIRST_S, ""
     for ticks, pose in frames:
         x, z, angle = pose[3 * body : 3 * body + 3]
@@ -245,7 +245,7 @@ def _moves(
 
 
 def _across(t: float) -> int:
-    """Where an instant stands on the tracks of the requirements."""
+    """The x coordinate of an instant on the tracks of the requirements."""
     share = (min(max(t, FIRST_S), LAST_S) - FIRST_S) / (LAST_S - FIRST_S)
     return round(14 + share * (PANEL - 28))
 
