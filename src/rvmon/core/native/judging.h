@@ -54,6 +54,33 @@ typedef struct {
     uint8_t decision;
 } captured_attempt;
 
+/* Failed attempts of a run that were only counted: one starts at `first`, then one every `period`. */
+typedef struct {
+    int64_t first;
+    int64_t period;
+    int64_t count;
+    uint32_t rank;             /* of the run */
+} repetition;
+
+/* A stretch without input, and the failed attempts that were only counted in it. */
+typedef struct {
+    int64_t from;              /* the stretch lies between these two instants; there is none while */
+    int64_t until;             /* `until` is -LIMIT */
+    int64_t reported;          /* failures reported one by one */
+    repetition *counted;       /* where values are captured: counted, not numbered yet; by `first` */
+    int64_t total;             /* attempts in `counted` */
+    int32_t count;             /* entries in `counted` */
+    int32_t room;
+} silence;
+
+/* A walk through `counted`, while attempts are numbered in their order: entries below index `over` lie
+ * before the attempt, those from index `begun` on after it. */
+typedef struct {
+    int64_t before;            /* attempts in the entries below `over` */
+    int32_t over;
+    int32_t begun;
+} numbering;
+
 /* Inclusive ranges of positions, disjoint and ascending. */
 typedef rv_range range;
 

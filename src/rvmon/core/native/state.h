@@ -133,6 +133,7 @@ struct run {
     run *previous_sibling;
     uint64_t call;             /* number of the last call that concerned it */
     int32_t id;                /* its index in the runs of its home */
+    int32_t touched_at;        /* its place in the home's `touched`, from 1; 0: it is not there */
     judge *judges;             /* by judge of the part */
     truth_log *truth_log;      /* NULL: no notes are kept */
     timers rules;              /* timers, by judge */
@@ -159,7 +160,6 @@ struct run {
     bool over;                 /* `payloads` are of the last position: captures still read them */
     bool watched;              /* its parent has to check whether the captured values remain known */
     bool blurs;                /* its captured values can still become unknown */
-    bool touched_now;          /* it did something in this call, and is in the home's `touched` */
     bool is_spare;             /* released, for reuse */
     bool doubted;              /* it is unknown whether there is such an instance */
     bool stays_busy;           /* visit the next position, for captured values or watches */
@@ -218,8 +218,6 @@ struct run {
         int64_t after;         /* the last sample taken */
         int64_t awaited;       /* with a gap: the tick that sees the samples taken since the last */
         int64_t ends_at;       /* the next position at which some outage may be over; NEVER */
-        int64_t quiet_from;    /* no input arrives between this and the next instant */
-        int64_t quiet_until;
         int32_t lost_count;    /* number of names in an outage */
         int32_t fading_count;
         int32_t fresh_count;
@@ -285,6 +283,7 @@ struct home {
     int32_t run_count;
     int32_t run_room;
     int32_t touched_count;
+    int32_t alarmed;           /* so many of them, the first ones, have their alarm set */
     char *pool;                /* attempts */
     attempt *scratch_attempt;  /* scratch: a queued attempt in the form of one in the pool */
     unknown_stretch *unknowns; /* when signals were unknown, for notes; NULL: no notes */
@@ -301,6 +300,7 @@ struct home {
     int32_t inbox_room;
     int64_t previous;          /* instant of the sample before the current one */
     int64_t alarm;
+    silence silence;           /* the current stretch without input */
     /* For a part that captures values. */
     uint32_t count;            /* counts as in `judge` */
     uint32_t doubts;

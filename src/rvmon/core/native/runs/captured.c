@@ -142,12 +142,15 @@ void queue_report(run *r, int32_t at)
  * their slots. */
 void number_and_report(home *h)
 {
+    numbering counted = {0, 0, 0};
     int32_t at;
     for (at = in_order(h, h->sure[0], true); at >= 0; at = h->captured_attempts[at].next_sure) {
         h->count++;
-        attempt_at(h, at)->number = h->count;
-        margin_numbered(h->monitor, attempt_at(h, at)->record, true, h->count);
+        attempt_at(h, at)->number = h->count + (uint32_t)counted_before(h, &counted, at);
+        margin_numbered(h->monitor, attempt_at(h, at)->record, true, attempt_at(h, at)->number);
     }
+    h->count += (uint32_t)h->silence.total;
+    forget_repeats(h);
     for (at = in_order(h, h->doubtful[0], false); at >= 0; at = h->captured_attempts[at].next_doubt) {
         h->doubts++;
         h->captured_attempts[at].doubt_number = h->doubts;

@@ -83,7 +83,6 @@ static void touch_due_judges(run *r, int64_t t)
 static void start(run *r, int64_t t)
 {
     r->at.started = true;
-    r->at.quiet_until = -LIMIT;
     r->at.starting = IS_TRUE;
     r->at.origin = t;
     r->at.begun = t;
@@ -243,8 +242,9 @@ void pass_time(run *r, int64_t limit, bool comes)
     const bool restarts = r->part->restarts && (gap > 0);
     int64_t position;
     int32_t i;
-    r->at.quiet_from = r->at.position;
-    r->at.quiet_until = limit;
+    if (r->part->plan->captured == 0) {
+        begin_silence(r->home, r->at.position, limit);
+    }
     if ((r->at.fading_count > 0) && (r->at.position + gap <= limit)) {
         end_pulses(r);
     }
@@ -274,7 +274,9 @@ void pass_time(run *r, int64_t limit, bool comes)
         }
         visit(r, position);
     }
-    r->at.quiet_until = -LIMIT;
+    if (r->part->plan->captured == 0) {
+        end_silence(r->home);
+    }
     set_alarm(r, position);
 }
 

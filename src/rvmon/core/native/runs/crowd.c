@@ -75,14 +75,51 @@ bool register_run(home *h, run *r)
     return true;
 }
 
-/* Record that a run does something in this call, so that its alarm is set again at the end. */
+/* Store a run at an index of `touched`. */
+static void put_touched(home *h, int32_t place, run *r)
+{
+    h->touched[place] = r;
+    r->touched_at = place + 1;
+}
+
+/* Record that a run does something in this call, so that its alarm is set again. */
 void touch_run(run *r)
 {
-    if (!r->touched_now) {
-        r->touched_now = true;
-        r->home->touched[r->home->touched_count] = r;
-        r->home->touched_count++;
+    home *h = r->home;
+    if (r->touched_at == 0) {
+        put_touched(h, h->touched_count, r);
+        h->touched_count++;
+    } else if (r->touched_at <= h->alarmed) {
+        h->alarmed--;
+        put_touched(h, r->touched_at - 1, h->touched[h->alarmed]);
+        put_touched(h, h->alarmed, r);
+    } else {
+        /* It will be. */
     }
+}
+
+/* Close the gaps that released runs leave in `touched`. */
+void drop_gone(home *h)
+{
+    int32_t kept = 0;
+    int32_t i;
+    for (i = 0; i < h->touched_count; i++) {
+        if (h->touched[i] != NULL) {
+            h->touched[kept] = h->touched[i];
+            kept++;
+        }
+    }
+    h->touched_count = kept;
+}
+
+void untouch_all(home *h)
+{
+    int32_t i;
+    for (i = 0; i < h->touched_count; i++) {
+        h->touched[i]->touched_at = 0;
+    }
+    h->touched_count = 0;
+    h->alarmed = 0;
 }
 
 /* Append a run to the list of root and instances, or to that of runs of attempts. */
@@ -148,12 +185,12 @@ static int64_t alarm_of(const run *r)
     return r->at.started ? r->at.alarm : ((GAP(r) > 0) ? r->at.awaited : NEVER);
 }
 
-/* Set the alarms of the runs touched, and that of the home. */
+/* Set the alarms of the runs touched since the last time, and that of the home. */
 void set_alarms(home *h)
 {
-    int32_t i;
-    for (i = 0; i < h->touched_count; i++) {
-        timers_set(&h->alarms, h->touched[i]->id, alarm_of(h->touched[i]));
+    for (; h->alarmed < h->touched_count; h->alarmed++) {
+        const run *r = h->touched[h->alarmed];
+        timers_set(&h->alarms, r->id, alarm_of(r));
     }
     h->alarm = timers_next(&h->alarms);
 }

@@ -22,36 +22,16 @@ static void come_through(run *r, int64_t t)
 /* Let time pass up to `limit` in all runs, in the order of alarms, so that decisions are in order. */
 static void pass_all(home *h, int64_t limit)
 {
-    while (timers_next(&h->alarms) <= limit) {
-        const int64_t t = (h->monitor->plan.header->gap > 0) ? timers_next(&h->alarms) : limit;
+    const bool sampled = h->monitor->plan.header->gap == 0; /* no position before the next sample */
+    int64_t t = timers_next(&h->alarms);
+    begin_silence(h, t - 1, limit);
+    while (t <= limit) {
+        t = sampled ? limit : t;
         for_called(h, call_due(h, t), t, come_through);
         set_alarms(h);
-        if (h->monitor->plan.header->gap == 0) {
-            break; /* sampled time: no position before the next sample */
-        }
+        t = sampled ? NEVER : timers_next(&h->alarms);
     }
-}
-
-static void drop_gone(home *h)
-{
-    int32_t kept = 0;
-    int32_t i;
-    for (i = 0; i < h->touched_count; i++) {
-        if (h->touched[i] != NULL) {
-            h->touched[kept] = h->touched[i];
-            kept++;
-        }
-    }
-    h->touched_count = kept;
-}
-
-void untouch_all(home *h)
-{
-    int32_t i;
-    for (i = 0; i < h->touched_count; i++) {
-        h->touched[i]->touched_now = false;
-    }
-    h->touched_count = 0;
+    end_silence(h);
 }
 
 /* End a call: number and report attempts; release the runs of attempts that are over, then the instances
@@ -60,9 +40,10 @@ void rest_all(home *h)
 {
     int32_t i;
     number_and_report(h);
+    h->alarmed = 0; /* places in `touched` change below */
     for (i = 0; i < h->touched_count; i++) {
         if ((h->touched[i]->parent != NULL) && is_idle(h->touched[i])) {
-            h->touched[i]->touched_now = false;
+            h->touched[i]->touched_at = 0;
             release_attempt_run(h->touched[i]);
             h->touched[i] = NULL;
         }
@@ -71,7 +52,7 @@ void rest_all(home *h)
         run *r = h->touched[i];
         if ((r != NULL) && (r->parent == NULL) && (r != h->root)
             && ((h->part->plan->flags & PART_FORGETS) != 0) && equals_root(r)) {
-            r->touched_now = false;
+            r->touched_at = 0;
             close_instance(r);
             h->touched[i] = NULL;
         }
@@ -99,6 +80,8 @@ static void clear_home(home *h)
     h->sure[0] = h->sure[1] = -1;
     h->doubtful[0] = h->doubtful[1] = -1;
     h->done[0] = h->done[1] = -1;
+    forget_repeats(h);
+    end_silence(h);
     h->count = h->doubts = h->passed = h->failed = h->inconclusive = 0;
     h->past_judged = h->past_count;
     forget_given(h);
@@ -120,7 +103,7 @@ static void clear_home(home *h)
     one->over = false;
     one->watched = false;
     one->blurs = false;
-    one->touched_now = false;
+    one->touched_at = 0;
     one->doubted = p->each != 0;
     one->stays_busy = false;
     clear_run(one);

@@ -1,5 +1,4 @@
-/* The positions at which a run can change without a sample, and the passing over of failures that time
- * alone causes. */
+/* The positions at which a run can change without a sample. */
 #include "attempts/attempts.h"
 #include "formulas/formulas.h"
 #include "runs/runs.h"
@@ -39,55 +38,6 @@ void tidy_failing(run *r)
         }
     }
     r->failing_count = kept;
-}
-
-/* While no input comes, at most REPEATS_REPORTED successive failures that time alone causes are reported
- * one by one; the rest, except for the last REPEATS_LEFT, are only counted. That bounds the cost of a stamp
- * that leaps by years: `always within 3 s e` fails 500 million times in fifty years. COUNTS_LEFT keeps
- * counts within 32 bits. */
-enum { REPEATS_REPORTED = 1000, REPEATS_LEFT = 2, COUNTS_LEFT = 65536 };
-
-/* Whether everything that the attempts of a run read stays the same without input, except by timers. */
-static bool is_silent(const run *r)
-{
-    return (GAP(r) > 0) && (r->part->plan->captured == 0) && (r->margins == NULL)
-           && (r->at.presence == ARE_THERE) && (r->at.fading_count + r->at.fresh_count == 0)
-           && !r->opening && !r->stays_busy;
-}
-
-/* If an episode would fail and restart very often before the next input, count these failures instead of
- * executing them; false if another attempt has to start at `t`.
- *
- * An attempt that starts at `t` finds the same inputs as the last one, which started in the same silence:
- * no attempt is open, and nothing that it reads changes before the next timer. So it fails after the same
- * time, and so do all others up to that timer. Numbers have 32 bits, so the count is capped below
- * that. */
-bool passes_repeats_over(run *r, int32_t index, int64_t t)
-{
-    judge *j = &r->judges[index];
-    const int64_t before = j->again_at;
-    const int64_t period = t - before;
-    const int64_t silent = r->at.quiet_from;
-    int64_t until = least(r->at.quiet_until, least(timers_next(&r->wake), r->at.ends_at) - 1);
-    int64_t many;
-    int64_t counted;
-    j->again_at = t;
-    if ((before <= silent) || has_attempts(j) || needs_every_position(r, index) || !is_sure(r, index)
-        || !is_silent(r)) {
-        return false;
-    }
-    until = (r->cut < NEVER) ? t : until;
-    many = (until > t) ? (until - t) / period - REPEATS_LEFT : 0;
-    if ((many <= REPEATS_REPORTED) || ((t - silent) / period < REPEATS_REPORTED)) {
-        return false;
-    }
-    counted = least(many, (int64_t)(UINT32_MAX - COUNTS_LEFT) - (int64_t)j->count);
-    counted = (counted > 0) ? counted : 0;
-    j->count += (uint32_t)counted;
-    j->failed += (uint32_t)counted;
-    j->failed_at += many * period;
-    j->again_at = t + (many - 1) * period;
-    return true;
 }
 
 /* The next position at which an attempt may follow a failure although nothing changes. */

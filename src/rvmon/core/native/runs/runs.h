@@ -18,10 +18,16 @@ bool distribute(rv_monitor *m, const rv_update *updates, int32_t count);
 int64_t tick_from(int64_t gap, int64_t t);
 bool may_go_on(const run *r, int32_t index);
 void tidy_failing(run *r);
-bool passes_repeats_over(run *r, int32_t index, int64_t t);
 int64_t next_start(const run *r);
 int64_t next_position(const run *r);
 void set_alarm(run *r, int64_t position);
+
+/* ---- repeats.c: attempts that are counted instead of made */
+void begin_silence(home *h, int64_t from, int64_t until);
+void end_silence(home *h);
+void forget_repeats(home *h);
+bool passes_repeats_over(run *r, int32_t index, int64_t t);
+int64_t counted_before(home *h, numbering *n, int32_t at);
 
 /* ---- clock.c */
 void clear_run(run *r);
@@ -99,6 +105,8 @@ int32_t says_for_instance(const run *r, const rv_update *u);
 /* ---- crowd.c: the runs of a part, and which of them a call concerns */
 bool register_run(home *h, run *r);
 void touch_run(run *r);
+void drop_gone(home *h);
+void untouch_all(home *h);
 void enlist(run *r, bool captured);
 void delist(run *r, bool captured);
 void set_alarms(home *h);
@@ -117,7 +125,6 @@ void home_wait(home *h, int64_t t);
 void home_lose(home *h, int64_t t);
 void home_begin_blank(home *h, int64_t t);
 void rest_all(home *h);
-void untouch_all(home *h);
 void home_come_to(home *h, int64_t end);
 void home_close(home *h, int64_t end, int64_t reached);
 int64_t home_due(home *h);
