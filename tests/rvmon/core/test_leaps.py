@@ -80,8 +80,8 @@ def test_what_is_counted_is_what_would_be_told(form, time):
 
 def of_keys(form, time="held"):
     return rvmon.loads(
-        f"spec s\ntime {time}\nevent put(id : int), beat(id : int)\nsignal p : bool\nsignal x : real\n"
-        f"requirement R1\n  {form}\n"
+        f"spec s\ntime {time}\nevent put(id : int), beat(id : int)\nsignal p : bool\n"
+        f"signal x : real\nrequirement R1\n  {form}\n"
     )
 
 

@@ -213,8 +213,8 @@ void rv_forget_records(rv_monitor *m);
 /* Bound the memory of a run without end. After rv_keep, rv_trim keeps only the `most` newest
  * records per requirement and verdict, and as many of the attempts that are known to stay
  * undecided. Nothing is dropped except by rv_trim, which acts once what is stored has doubled since
- * it last did, and always after rv_finish; it returns whether the records changed. Counts and
- * verdicts remain exact. */
+ * it last did, and grown by one record per run, and always after rv_finish; it returns whether the
+ * records changed. Counts and verdicts remain exact. */
 int rv_keep(rv_monitor *m, int64_t most);
 bool rv_trim(rv_monitor *m);
 

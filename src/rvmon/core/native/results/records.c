@@ -339,6 +339,7 @@ bool rv_trim(rv_monitor *m)
 {
     bool trimmed = false;
     int64_t left = 0;
+    int64_t runs = 0;
     int32_t i;
     if ((m->kept_of == NULL) || m->spoilt
         || (!m->finished && (m->record_count + m->undecidable_count <= m->trim_at))) {
@@ -346,9 +347,10 @@ bool rv_trim(rv_monitor *m)
     }
     for (i = 0; !m->finished && (i < m->plan.part_count); i++) {
         left += trim_undecidable(m, &m->homes[i]);
+        runs += m->homes[i].run_count;
     }
     m->undecidable_count = left;
     trimmed = trim_records(m);
-    m->trim_at = 2 * (m->record_count + left) + PATIENCE;
+    m->trim_at = 2 * (m->record_count + left) + runs + PATIENCE; /* all runs were looked at */
     return trimmed;
 }
