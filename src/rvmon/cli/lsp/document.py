@@ -211,7 +211,7 @@ class Document:
                     _KINDS[head[1]],
                     self.location(whole if len(names) < 2 else name).range,
                     self.location(name).range,
-                    _detail(item) if item else "cannot be read",
+                    _detail(item) if item else "has errors",
                 )
 
     def definitions(self, position: lsp.Position) -> list[lsp.Location]:
