@@ -24,7 +24,7 @@ def run_compare(arguments: argparse.Namespace) -> int:
     if only and not (comparison.same or comparison.differences):
         raise RvmonError(
             f"{arguments.before} and {arguments.after} have no requirement on a recording in "
-            f"common, and {only[0]} is in one of them alone: nothing was compared"
+            f"common, and {only[0]} is in only one of them: nothing was compared"
         )
     if arguments.format == "json":
         import msgspec

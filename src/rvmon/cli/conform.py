@@ -107,7 +107,7 @@ def _print(path: str, answer: Conformance) -> None:
         return
     what = f"`{divergence.label}`" if divergence.label else "nothing more happens"
     say(f"{path}: diverges at {divergence.at / 1e9:g} s, {count} before: {what}")
-    say("  no run of the model does that; here it could do:")
+    say("  no run of the model does that; here the model allows:")
     for allowed in divergence.allowed:
         say(f"    {_allowed_text(allowed)}")
     if not divergence.allowed:

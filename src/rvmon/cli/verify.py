@@ -20,6 +20,7 @@ from rvmon.models.runs.statistics import ERROR, Sampled, sample, trajectories
 from rvmon.models.search.budget import Budget, Meter, Outcome, Policy, Watch
 from rvmon.models.search.extremes import Extreme, extremes
 from rvmon.models.search.verify import verify
+from rvmon.texts import counted
 
 if TYPE_CHECKING:
     from rvmon.models.requirement_check import Observation
@@ -137,14 +138,16 @@ def _print_extremes(network: Network, values: Sequence[Extreme]) -> None:
 
 
 def _print_sampled(sampled: Sampled) -> None:
-    words = {True: "holds, by a test", False: "does not hold, by a test", None: "simulated"}
+    by = "by a statistical test"
+    words = {True: f"holds, {by}", False: f"does not hold, {by}", None: "simulated"}
     word = "not decided" if sampled.margin and sampled.holds is None else words[sampled.holds]
     _print_query(sampled.query, word)
     say(f"    {sampled.value:.4f} of {sampled.runs:,} simulated runs; ", end="")
     if sampled.low is not None:
         say(f"with {100 * (1 - ERROR):g} % confidence from {sampled.low:.4f} to {sampled.high:.4f}")
     else:
-        say(f"wrong in {100 * ERROR:g} % of cases, but within {sampled.margin:g} of the level")
+        error = f"error probability {100 * ERROR:g} %"
+        say(f"{error}, unless the probability is within {sampled.margin:g} of the level")
     say(flush=True)
 
 
@@ -162,7 +165,8 @@ def _show_suite(network: Network, arguments: argparse.Namespace, budget: Budget)
         for line in describe.run_lines(network, shown):
             say(f"  {line}")
     total = suite.covered + len(suite.missing)
-    say(f"{len(suite.runs)} runs go through {suite.covered} of {total} {criterion}")
+    cover = "covers" if len(suite.runs) == 1 else "cover"
+    say(f"{counted(len(suite.runs), 'run')} {cover} {suite.covered} of {total} {criterion}")
     for item in suite.missing:
         say(f"  not reached: {item_text(network, item, criterion)}")
     if suite.stopped:

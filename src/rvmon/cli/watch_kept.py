@@ -119,7 +119,7 @@ def watch_kept(
     }
     if untold := sorted(failed - told):
         # Not reported yet, as another line may have the same stamp.
-        warn(f"{', '.join(untold)}: fails by the last line, reported when a later stamp comes")
+        warn(f"{', '.join(untold)}: fails at the last line; reported once a later stamp arrives")
     return int(bool(lost or told or failed))
 
 

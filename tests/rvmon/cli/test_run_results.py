@@ -186,4 +186,4 @@ def test_two_runs_are_compared(folder, says):
     assert says(0, "compare", "one.csv", "old.csv").out.endswith("\n1 verdict as before\n")
     (folder / "none.csv").write_text(f"{head}\n")
     told = says(2, "compare", "old.csv", "none.csv").err
-    assert "good.csv is in one of them alone: nothing was compared" in told
+    assert "good.csv is in only one of them: nothing was compared" in told

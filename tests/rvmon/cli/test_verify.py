@@ -75,7 +75,7 @@ def test_requirements_on_all_runs(lamp, says):
 
 def test_suites(lamp, says):
     model, _ = lamp
-    assert "1 runs go through 2 of 2 edges" in says(0, "verify", model, "--suite", "edges").out
+    assert "1 run covers 2 of 2 edges" in says(0, "verify", model, "--suite", "edges").out
     suite = json.loads(says(0, "verify", model, "--suite", "edge-pairs", "--format", "json").out)
     assert suite["missing"] == []
     assert suite["runs"][0]["trace"]

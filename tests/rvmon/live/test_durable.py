@@ -218,7 +218,7 @@ def test_what_fails_by_the_last_line_is_no_success(watched):
     assert "there is no line" in watched(2, "\n").err
     text = '{"t": 0, "x": 1}\n{"t": 1, "x": 9}\n'
     told = watched(1, text)
-    assert (told.out, "R: fails by the last line" in told.err) == ("", True)
+    assert (told.out, "R: fails at the last line" in told.err) == ("", True)
     assert "R#1 F" in watched(1, text + '{"t": 2, "x": 1}\n').out
 
 

@@ -161,7 +161,7 @@ def test_the_command_says_figures(tmp_path, capsys, says):
     assert "simulated: Pr" in (told := capsys.readouterr().out)
     assert "95 % confidence" in told
     failing = ["verify", str(model), "--query", "Pr[<=2](<> A.heads) >= 0.5"]
-    assert "does not hold, by a test" in says(1, *failing).out
+    assert "does not hold, by a statistical test" in says(1, *failing).out
     (one,) = json.loads(says(1, *failing, "--format", "json").out)["simulated"]
     assert one["holds"] is False
     assert one["error"] == 0.05
