@@ -22,9 +22,9 @@ def main():
     client = Client(CallbackAPIVersion.VERSION2)
     client.connect("localhost", int(sys.argv[1]))
     client.loop_start()
-    began = time.monotonic()
+    started = time.monotonic()
     for seconds, robot, name, value in SCENE:
-        time.sleep(max(0.0, began + seconds - time.monotonic()))
+        time.sleep(max(0.0, started + seconds - time.monotonic()))
         client.publish(f"robots/{robot}/{name}", value, qos=1).wait_for_publish()
     client.disconnect()
     client.loop_stop()

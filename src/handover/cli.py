@@ -88,9 +88,9 @@ def _campaign(arguments: Namespace) -> Campaign:
     from handover.campaign.campaign import handover_campaign
 
     given = vars(arguments)
-    asked = (given.get("robot") or "").split(",")
+    requested = (given.get("robot") or "").split(",")
     return handover_campaign(
-        [name for name in ROBOTS if name in asked] or ROBOTS,
+        [name for name in ROBOTS if name in requested] or ROBOTS,
         monitors=not given.get("no_monitors"),
         conforming=given.get("conform", 0),
     )

@@ -149,14 +149,14 @@ def write_pages(
         what="page",
     )
     addresses: dict[tuple[str, str], str] = {}
-    otherwise: list[str] = []
+    changed: list[str] = []
     with closing(written):
         pairs = zip(wanted, written, strict=True)
         for number, (played, verdicts) in enumerate(pairs, start=1):
             test = played.job.test.name
             addresses[played.job.robot, test] = _address(played.job)
             if verdicts != played.outcome.verdicts:
-                otherwise.append(test)
+                changed.append(test)
             progress(number)
     cells = {
         cell: f"{addresses[job.robot, job.test.name]}#{cell[2]}"
@@ -179,7 +179,7 @@ def write_pages(
         ),
     )
     write_whole(folder / REPORT, page)
-    return otherwise
+    return changed
 
 
 @dataclass(frozen=True, slots=True)

@@ -217,18 +217,18 @@ def _actions_by_edge(
     """The action for each edge that has one, by the index of its automaton and the edge."""
     found: dict[tuple[int, NetworkEdge], Action] = {}
     for name, action in actions.items():
-        alike = {
+        matches = {
             (place, edge): full
             for place, automaton in enumerate(network.automata)
             for edge in automaton.edges
             if name in ((full := _name_of(network, place, edge))[:3], full)
         }
-        if not alike:
+        if not matches:
             raise TestError(f"actions of a model: it has no edge {name}")
-        if len(several := dict.fromkeys(alike.values())) > 1:
+        if len(several := dict.fromkeys(matches.values())) > 1:
             listed = ", ".join(map(str, several))
             raise TestError(f"actions of a model: it has several edges {name}: name each: {listed}")
-        found |= dict.fromkeys(alike, action)
+        found |= dict.fromkeys(matches, action)
     return found
 
 
