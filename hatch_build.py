@@ -1,12 +1,12 @@
-"""Compiles the native code when the package is built, and in place: `python hatch_build.py`.
+"""Compile the native code when the package is built, or in place: `python hatch_build.py`.
 
-The binding, `src/rvmon/core/native/python`, and all other C of the core as one unit, which makes
-them faster, are compiled and linked to one extension, `rvmon.native._core`; the files of
-`src/rvmon/models/native`, each by itself, to another, `rvmon.native._zones`, and likewise those of
-`src/rvmon/recordings/native` to `rvmon.native._csv`. The compiler is `$CC`, Python's own, `cc`,
-`gcc` or `clang`; where none works, the build asks for the package `ziglang`, which brings one.
-Where Python's headers are missing, the C takes its own declarations (`python_abi.h`). `$CFLAGS` and
-`$LDFLAGS` are added.
+The extension `rvmon.native._core` consists of the binding, `src/rvmon/core/native/python`, and all
+other C files of the core, compiled as one unit, which makes them faster. The files of
+`src/rvmon/models/native`, compiled separately, become `rvmon.native._zones`, and those of
+`src/rvmon/recordings/native` become `rvmon.native._csv`. The compiler is `$CC`, Python's own, `cc`,
+`gcc` or `clang`; if none works, the build requires the package `ziglang`, which contains one.
+If Python's headers are missing, the C code uses its own declarations (`python_abi.h`). `$CFLAGS`
+and `$LDFLAGS` are added.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from typing import Any
 
 try:
     from hatchling.builders.hooks.plugin.interface import BuildHookInterface
-except ImportError:  # run as a program, which needs Python alone
+except ImportError:  # run as a program, which needs only Python
     BuildHookInterface = object
 
 PACKAGE = Path(__file__).resolve().parent / "src" / "rvmon"
@@ -43,13 +43,13 @@ NATIVE = PACKAGE / "native"
 SOURCES = NATIVE / "sources.py"
 ZIG = "ziglang>=0.13,<1"
 LIMITED_API = "0x030B0000"
-"""The stable ABI of Python 3.11, which one extension for all later versions needs."""
+"""The stable ABI of Python 3.11, so that one extension works for all later versions."""
 FLAGS = (
     *("-std=c99", "-O2", "-fvisibility=hidden", "-fno-fast-math", "-ffp-contract=off"),
     "-Werror=implicit-function-declaration",
 )
-"""Numbers are binary64 and rounded after each operation, whatever `$CFLAGS` says before; a function
-that no header declares would return half a pointer."""
+"""Numbers are binary64 and rounded after each operation, whatever `$CFLAGS` says. An implicitly
+declared function would return half a pointer, so it is an error."""
 PROBE = "#include <math.h>\n#include <stdlib.h>\nint probe(void);\nint probe(void) { return 0; }\n"
 
 
@@ -59,7 +59,7 @@ class CoreBuildHook(BuildHookInterface):
     PLUGIN_NAME = "custom"
 
     def dependencies(self) -> list[str]:
-        """What the build needs besides: a compiler, where there is none."""
+        """Additional requirements of the build: a compiler, if there is none."""
         return [] if compiler() else [ZIG]
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
@@ -74,15 +74,15 @@ class CoreBuildHook(BuildHookInterface):
         build_data["tag"] = wheel_tag()
 
     def finalize(self, version: str, _data: dict[str, Any], _artifact: str) -> None:
-        """Remove what was compiled for the wheel, which has it now."""
+        """Remove the extensions compiled for the wheel, which now contains them."""
         if version != "editable":
             self._made.cleanup()
 
 
 def compiler() -> list[str]:
-    """The command of a C compiler that works; empty if none does, as found, not as hoped.
+    """The command of a C compiler that works when tried; empty if none does.
 
-    `$CC` is taken at its word: who names a compiler does not want another.
+    `$CC` is used without a trial: whoever names a compiler does not want another.
     """
     if named := os.environ.get("CC"):
         return shlex.split(named)
@@ -93,7 +93,7 @@ def compiler() -> list[str]:
 
 
 def _works(command: Sequence[str]) -> bool:
-    """Whether it compiles and links: Debian's gcc comes without the headers of C."""
+    """Whether a compiler compiles and links; Debian's gcc alone lacks the C headers."""
     if not shutil.which(command[0]):
         return False
     with tempfile.TemporaryDirectory() as folder:
@@ -108,14 +108,14 @@ def free_threaded() -> bool:
 
 
 def file_name(module: str = "_core") -> str:
-    """The name of an extension: of the stable ABI, or of this Python alone if free-threaded."""
+    """The file name of an extension: for the stable ABI, or for this Python if free-threaded."""
     if free_threaded():
         return module + importlib.machinery.EXTENSION_SUFFIXES[0]
     return module + (".pyd" if os.name == "nt" else ".abi3.so")
 
 
 def wheel_tag() -> str:
-    """Python, ABI and platform that a wheel with the extension is for."""
+    """The tag of a wheel with the extension: Python, ABI and platform."""
     from packaging.tags import platform_tags  # comes with hatchling
 
     name = next(name for name in platform_tags() if "manylinux" not in name and "musl" not in name)
@@ -126,10 +126,10 @@ def wheel_tag() -> str:
 
 
 def build(folder: Path) -> Path:
-    """Compile the core into a folder; returns the extension. An older one there is replaced whole.
+    """Compile the core into a folder and return the extension; an older one is replaced atomically.
 
     Raises:
-        SystemExit: the compiler failed; the text is what it said.
+        SystemExit: the compiler failed; the text is its message.
     """
     with tempfile.TemporaryDirectory(dir=folder, prefix=".build-") as made:
         unit = Path(made, "unit.c")
@@ -139,7 +139,7 @@ def build(folder: Path) -> Path:
 
 
 def build_all(folder: Path) -> list[Path]:
-    """Compile the core and the extensions beside it into a folder, likewise."""
+    """Compile the core and the other extensions into a folder, in the same way."""
     return [build(folder), *(_build_beside(folder, name) for name in BESIDE)]
 
 
@@ -151,8 +151,8 @@ def _build_beside(folder: Path, module: str) -> Path:
 
 
 def _extension(target: Path, home: Path, sources: Sequence[str], made: Path) -> Path:
-    """Compile sources, which are seen from their home, and link them, by way of a folder."""
-    command = compiler() or [sys.executable, "-m", "ziglang", "cc", "-g0"]  # it debugs unasked
+    """Compile sources (relative to `home`) into the folder `made`, and link them to `target`."""
+    command = compiler() or [sys.executable, "-m", "ziglang", "cc", "-g0"]  # its default is -g
     flags = [*shlex.split(os.environ.get("CFLAGS", "")), *FLAGS, *_flags_of_python(home)]
     flags += _machine()
     objects = [str(made / f"{Path(source).stem}.o") for source in sources]
@@ -164,12 +164,12 @@ def _extension(target: Path, home: Path, sources: Sequence[str], made: Path) -> 
         list(threads.map(lambda line: _run(line, home), lines))
     linked = made / target.name
     _run([*command, *flags, *_link(), *objects, "-o", str(linked), "-lm", *_link_last()], home)
-    os.replace(linked, target)  # programs that run keep the old one whole
+    os.replace(linked, target)  # atomic: running programs keep the old file
     return target
 
 
 def _flags_of_python(home: Path) -> list[str]:
-    """Where the headers of Python are and which ABI is meant."""
+    """Flags for Python's headers and for the ABI."""
     include = {sysconfig.get_path("include"), sysconfig.get_path("platinclude")}
     flags = [f'-DRVMON_SOURCE_HASH="{_source_hash(home)}"']
     if any(Path(folder, "Python.h").exists() for folder in include):
@@ -184,17 +184,17 @@ def _flags_of_python(home: Path) -> list[str]:
 
 
 def _source_hash(home: Path) -> str:
-    """As the package computes it at import; the package itself needs what is not installed yet."""
+    """The checksum as at import, without importing the package: its dependencies may be missing."""
     return str(runpy.run_path(str(SOURCES))["source_hash"](str(home)))
 
 
 def _unit() -> str:
-    """The sources of the core as one, of which messages name the files."""
+    """The sources of the core as one unit; compiler messages still name the files."""
     return str(runpy.run_path(str(SOURCES))["core_source"]("core.h", str(CORE), lines=True))
 
 
 def _machine() -> list[str]:
-    """Flags for what it runs on. Of old, 32-bit x86 computes with 80 bits: never here."""
+    """Flags for the machine: 32-bit x86 must not compute with 80 bits, as it does by default."""
     flags = [] if os.name == "nt" else ["-fPIC"]
     if sys.maxsize < 2**32 and platform.machine().lower() in {"i386", "i586", "i686", "x86_64"}:
         flags += ["-msse2", "-mfpmath=sse"]
@@ -202,13 +202,13 @@ def _machine() -> list[str]:
 
 
 def _link() -> list[str]:
-    """Flags that make an extension of objects; Python's own names are found when it is loaded."""
+    """Flags that link an extension; symbols of Python are resolved when it is loaded."""
     mac = ["-bundle", "-undefined", "dynamic_lookup"]
     return mac if sys.platform == "darwin" else ["-shared"]
 
 
 def _link_last() -> list[str]:
-    """Libraries and `$LDFLAGS`: on Windows, Python's names have to be found when it is linked."""
+    """Libraries and `$LDFLAGS`; on Windows, symbols of Python must be resolved when linking."""
     flags = shlex.split(os.environ.get("LDFLAGS", ""))
     if os.name != "nt":
         return flags
