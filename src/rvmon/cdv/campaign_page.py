@@ -120,15 +120,8 @@ def campaign_page(
 ) -> str:
     """The page of a campaign, as HTML.
 
-    Args:
-        summary: the figures of the campaign.
-        tables: the verdict tables, by robot.
-        presentation: how the campaign presents its figures.
-        command: the command line of the campaign.
-        examples: address of an example for each cell that has one.
-        tests: addresses of the pages of tests, by robot and test.
-        coverage: figures of coverage with the addresses of their pages, by robot.
-        further: further sections.
+    `examples` has the address of an example for each cell that has one, and `tests` the addresses
+    of the pages of tests, by robot and test.
     """
     robots_of: dict[tuple[str, str], list[str]] = {}
     for robot in summary.robots.values():

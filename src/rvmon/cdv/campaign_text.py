@@ -203,14 +203,9 @@ def dated_files(folder: Path) -> dict[Path, int]:
 
 
 def left_over(folder: Path, before: Mapping[Path, int]) -> str:
-    """A warning that files of an earlier campaign remain next to those of this one.
+    """A warning that files of an earlier campaign remain next to those of this one; or empty.
 
-    Args:
-        folder: the campaign's folder.
-        before: the result of `dated_files` before this campaign was written.
-
-    Returns:
-        The warning; empty if no such file remains.
+    `before` is the result of `dated_files` before this campaign was written.
     """
     now = dated_files(folder)
     left = (path for path, at in before.items() if now.get(path) == at)

@@ -125,10 +125,8 @@ def write_coverage(
 ) -> dict[str, CoverageFigures]:
     """Write each robot's coverage database and page, and its code coverage for other tools.
 
-    Args:
-        folder: the campaign's folder.
-        results: of the campaign; tests with a planted fault are left out.
-        pages: addresses of the pages of runs, relative to `folder`, by robot and test.
+    Tests with a planted fault are left out. `pages` has the addresses of the pages of runs,
+    relative to `folder`, by robot and test.
 
     Raises:
         RvmonError: a file cannot be written, or see `coverage_model`.

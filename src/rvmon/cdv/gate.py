@@ -129,11 +129,8 @@ def judge_test(
 ) -> TestJudgement:
     """Compare one test with what was expected of it, as `judge_campaign` does with all.
 
-    Args:
-        played: the test.
-        expected: the known failures of the campaign.
-        shared: requirements that must hold in a share of runs, which no single test decides.
-        gate: if given, inconclusive verdicts are wrong unless the gate or the test allows them.
+    `shared` requirements must hold in a share of runs, so no single test decides them. With a gate,
+    inconclusive verdicts are wrong unless the gate or the test allows them.
     """
     test, outcome = played.job.test, played.outcome
     wrong: list[str] = []

@@ -19,12 +19,7 @@ from rvmon.verdicts import Verdict
 
 
 def summarise(results: Results, specs: Mapping[str, Spec]) -> campaign_summary.CampaignSummary:
-    """Count verdicts, statements, branches, states and transitions.
-
-    Args:
-        results: of the campaign.
-        specs: the specifications by robot; of a robot without one no verdicts are counted.
-    """
+    """Count verdicts, statements, branches, states and transitions; without a spec, no verdicts."""
     campaign = results.plan.campaign
     measured = model_of(code_coverage.measured_groups(campaign))
     blocks = [] if campaign.code is None else [block.name for block in campaign.code.blocks]

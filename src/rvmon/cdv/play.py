@@ -111,12 +111,7 @@ class Bench:
         self._marked = code is not None and code.marked
 
     def play(self, test: Test, *, keeps: bool = False, wants_scene: bool = False) -> Recorded:
-        """Play a test; an exception of the robot's code is a result.
-
-        Args:
-            test: the test.
-            keeps: whether the samples are kept.
-            wants_scene: whether the run should have a scene.
+        """Play a test, keeping its samples if `keeps`; an exception of the robot is a result.
 
         Raises:
             TestError: the test cannot be played.

@@ -62,14 +62,8 @@ def replay_page(
 ) -> str:
     """The page of one test.
 
-    Args:
-        replay: the test, played again.
-        robot: name of the robot.
-        spec: the specification that judged the test.
-        command: the command line that replays it.
-        others: passing runs that a failed attempt can be compared with.
-        back: address of the campaign's page; empty: none.
-        smallest: the command line that shrinks the test; empty: none.
+    `others` are runs that a failed attempt can be compared with, `back` is the address of the
+    campaign's page; `command` replays the test, and `smallest` shrinks it.
     """
     facts: list[tuple[str, Child]] = [*_facts(replay, robot, spec)]
     if smallest:
@@ -119,16 +113,8 @@ def write_pages(
 ) -> list[str]:
     """Write `report.html`, a page per example to `runs/`, and the coverage.
 
-    Args:
-        folder: the campaign's folder.
-        summary: the figures of the campaign.
-        tables: the verdict tables, by robot.
-        results: of the campaign.
-        command: the command line of the campaign.
-        examples: the tests that get a page.
-        jobs: processes; default: one per core.
-        progress: called with the number of written pages.
-        spool: folder of recordings from `player`; tests without one there are played again.
+    Tests are played again for their pages, unless `spool` has their recordings. `command` is the
+    command line of the campaign; `progress` is called with the number of written pages.
 
     Returns:
         The names of tests whose verdicts differed when they were played again.

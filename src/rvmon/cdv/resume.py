@@ -64,14 +64,9 @@ class Unfinished(journal.Journal, frozen=True):
 def unfinished(
     folder: Path, plan: Plan, specs: Mapping[str, Spec], command: str, shard: Shard | None = None
 ) -> Unfinished:
-    """Open the journal of a campaign, or start one.
+    """Open the journal of a campaign in its folder, or start one.
 
-    Args:
-        folder: the campaign's folder.
-        plan: the tests.
-        specs: the specifications by robot.
-        command: the command line of the campaign.
-        shard: the part to play; `None`: all tests, using the journals of finished shards.
+    Without a `shard`, it is for all tests and uses the journals of finished shards.
 
     Raises:
         RvmonError: the journal there belongs to another campaign, or cannot be read or written.

@@ -143,10 +143,7 @@ def table_document(
 ) -> dict[str, object]:
     """The content of `table.json`; the seed determines everything but `seconds`.
 
-    Args:
-        summary: the figures of the campaign.
-        control_key: the key of the counts with controls in place of their tests.
-        more: further entries.
+    `control_key` is the key of the counts with controls in place of their tests.
     """
     robots = {
         name: _robot_document(robot, summary.kind, control_key)

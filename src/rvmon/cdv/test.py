@@ -71,11 +71,9 @@ class TestError(RvmonError, ValueError):
 
 @contextmanager
 def blamed(what: str, kind: type[RvmonError] = TestError) -> Iterator[None]:
-    """Turn exceptions of users' code into errors of ours; an `RvmonError` passes through.
+    """Raise an exception of users' code as a `kind` whose message starts with `what` failed.
 
-    Args:
-        what: what failed, such as "strategy `wind` cannot make its tests".
-        kind: the type of the error.
+    An `RvmonError` passes unchanged.
     """
     try:
         yield

@@ -112,13 +112,9 @@ def read_groups(database: sqlite3.Connection, path: str | Path | None) -> Stored
 def write_groups(
     database: sqlite3.Connection, path: str | Path | None, known: Stored, more: Stored
 ) -> None:
-    """Add groups and items to the known ones; call it within a transaction.
+    """Add groups and items, `more`, to the known ones; call it within a transaction.
 
-    Args:
-        database: the database to write.
-        path: the file that `more` comes from, for errors.
-        known: the groups in the database.
-        more: the groups to add.
+    `path` is the file that they come from, for errors.
 
     Raises:
         CoverageError: a group or item contradicts a known one, or a number is invalid; nothing is

@@ -72,10 +72,7 @@ def write_entries(
 ) -> None:
     """Write tests; those already stored are not added again.
 
-    Args:
-        database: the database.
-        entries: the tests.
-        ids: ids of the items in the table, by index in the model.
+    `ids` are those of the items in the table, by index in the model.
     """
     database.executemany(_WRITE, (_stored(entry, ids) for entry in entries))
 
@@ -93,12 +90,7 @@ def _stored(entry: Entry, ids: NDArray[np.int64]) -> tuple[object, ...]:
 def read_entries(
     database: sqlite3.Connection, path: str | Path | None, ids: NDArray[np.int64]
 ) -> list[Entry]:
-    """The tests, in the order of their campaigns.
-
-    Args:
-        database: the database.
-        path: its file, for errors.
-        ids: ids of the items in the table, by index in the model.
+    """The tests, in the order of their campaigns; `ids` are as for `write_entries`.
 
     Raises:
         CoverageError: the contents are damaged.

@@ -218,11 +218,6 @@ class Witnesses:
 
         These are all edges of the run if the system first entered the states of the run in the same
         order, otherwise none; the difference is noted for `explained`.
-
-        Args:
-            witness: the run that the test follows.
-            test: name of the test.
-            hits: its hits.
         """
         if not self._describes:
             return {}

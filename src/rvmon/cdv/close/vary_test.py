@@ -112,16 +112,9 @@ class Mutator:
     def mutated(
         self, test: Test, others: Sequence[Test], rng: random.Random, drawn: list[Draw]
     ) -> Test | None:
-        """A test with up to three changes, in which values may come from other tests.
+        """A test with up to three changes, some borrowed from others; `None` if none is valid.
 
-        Args:
-            test: the test to change.
-            others: tests to borrow values from.
-            rng: the source of randomness.
-            drawn: the draws of the changes are appended to this list.
-
-        Returns:
-            The changed test; `None` if no change gave a valid one.
+        The draws of the changes are appended to `drawn`.
         """
         for _ in range(ATTEMPTS if self._fields else 0):
             choices: list[Draw] = []
@@ -161,15 +154,10 @@ class Mutator:
         rng: random.Random,
         drawn: list[Draw],
     ) -> Any:
-        """A value, as plain data, with one change.
+        """A value of some type, as plain data, with one change.
 
-        Args:
-            value: the value to change.
-            kind: its type.
-            donor: the value at the same place of another test.
-            path: the address of this place; all elements of a sequence share one.
-            rng: the source of randomness.
-            drawn: the draws are appended to this list.
+        `donor` is the value at the same place of another test. `path` is the address of this place;
+        all elements of a sequence share one.
         """
         match kind:
             case inspect.StructType():

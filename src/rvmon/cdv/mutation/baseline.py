@@ -35,13 +35,7 @@ class Difference:
 
 
 def recorder(name: str, robot: Robot, code: Code | None = None) -> Callable[[Test], Recorded]:
-    """Make a function that plays and records tests of a robot in this process.
-
-    Args:
-        name: name of the robot.
-        robot: the robot.
-        code: the code whose coverage is measured.
-    """
+    """Make a function that plays and records tests here, measuring the coverage of `code`."""
     bench = Bench(name, robot, code)
 
     def play(test: Test) -> Recorded:
@@ -167,13 +161,6 @@ def record_suite(
     """Play tests on the unchanged robot and record them.
 
     Tests for another robot, or with a planted fault, are skipped.
-
-    Args:
-        campaign: the campaign.
-        robot: name of the robot.
-        tests: the suite.
-        jobs: number of processes.
-        progress: called after each test.
 
     Raises:
         RvmonError: the campaign measures no code, the robot has no requirements, or no test gives a

@@ -30,11 +30,7 @@ from rvmon.verdicts import Verdict
 
 
 def plant(mutant: Mutant, source: str) -> None:
-    """Apply a mutant to the code of this process.
-
-    Args:
-        mutant: the mutant.
-        source: the unchanged text of its file.
+    """Apply a mutant to the code of this process; `source` is the unchanged text of its file.
 
     Raises:
         RvmonError: the mutant cannot be planted; the message says why.

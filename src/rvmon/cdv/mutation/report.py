@@ -206,10 +206,7 @@ SPEC_TITLE = (
 def print_mutation(report: MutationReport, printer: Printer, *, most: int | None = None) -> None:
     """Print scores, ways of killing, and the survivors of each suite as questions.
 
-    Args:
-        report: the report.
-        printer: prints it.
-        most: the most survivors listed per kind; `None`: all survivors and all killed mutants.
+    At most `most` survivors are listed per kind; `None`: all survivors and all killed mutants.
     """
     for title, head, rows in _score_tables(report):
         printer.line(f"Mutants of {title}")

@@ -242,11 +242,6 @@ def try_spec_mutants(
 
     For each mutant with no such run, the analysis tries to prove that none exists.
 
-    Args:
-        spec: the original specification.
-        mutants: mutants of its requirements.
-        recorded: recorded runs on the unchanged code, by test.
-
     Returns:
         The result of each mutant, in the given order.
     """

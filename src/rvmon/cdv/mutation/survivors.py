@@ -92,12 +92,7 @@ def failing_runs(tried: Iterable[Tried]) -> dict[str, Recorded]:
 
 
 def scored(tried: Iterable[Tried], equivalent: Iterable[str] = ()) -> Score:
-    """The score on mutants of code.
-
-    Args:
-        tried: the mutants with their results.
-        equivalent: identities of mutants that are declared equivalent.
-    """
+    """The score on mutants of code; `equivalent` has the identities of those declared so."""
     counted = [trial for trial in tried if not trial.invalid]
     known = set(equivalent)
     return Score(
@@ -144,11 +139,7 @@ def readers(spec: CheckedSpec) -> dict[str, list[str]]:
 
 
 def question(survivor: Tried, reading: Mapping[str, Sequence[str]]) -> str:
-    """What the suite saw of a survivor, as a sentence.
-
-    Args:
-        survivor: the mutant.
-        reading: the result of `readers`.
+    """What the suite saw of a survivor, as a sentence; `reading` is the result of `readers`.
 
     >>> from pathlib import Path
     >>> from rvmon.cdv.mutation.python_mutants import Mutant
@@ -184,14 +175,11 @@ def _differs(difference: Difference, reading: Mapping[str, Sequence[str]]) -> st
 def equivalents(path: str | Path, mutants: Iterable[Mutant]) -> dict[str, str]:
     """Read a TOML file of equivalent mutants.
 
-    Each table has an argument, `because`, and `mutants`, the changes by identity.
-
-    Args:
-        path: the file.
-        mutants: all mutants of the code.
+    Each table has an argument, `because`, and `mutants`, the changes by identity. `mutants` are all
+    mutants of the code.
 
     Returns:
-        The argument for each mutant, by its identity.
+        The argument for each equivalent mutant, by its identity.
 
     Raises:
         RvmonError: the file cannot be read or is not of this form, it names an unknown mutant, or
