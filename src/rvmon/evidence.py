@@ -140,7 +140,7 @@ class About(msgspec.Struct, frozen=True, kw_only=True):
         rvmon: its version.
         law: version of the law.
         python: its version.
-        packages: versions of the optional packages that were installed.
+        packages: the installed versions of the packages that rvmon or the campaign can use.
         programs: SHA-256 of the sources of rvmon and, for a campaign, of its dependencies.
         specs: names of the entries with the requirements, by robot; for recordings, the only key
             is the empty string.

@@ -49,7 +49,7 @@ class Options(Struct, frozen=True):
     allow_missing: bool | tuple[str, ...] = False
     # whether to measure the whole coverage model; default: only coverpoints and crosses
     coverage: bool = False
-    explains: bool = True  # whether to look for near misses of triggers and late responses
+    explains: bool = True  # whether to find near misses, late responses and values at failures
 
 
 def spec_and_options(

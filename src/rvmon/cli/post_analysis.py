@@ -242,7 +242,7 @@ def _read_again(
     spec: Spec, judged: FileRecording, asked: set[str], end: int
 ) -> Iterable[Batch | Sample]:
     """Read a recording again up to `end` (ticks), at least the names in `asked`."""
-    # In sampled time, and in recordings of messages, each sample is a position, whatever its names.
+    # In sampled time, and for messages, it matters that a sample came, whatever names it updates.
     narrow = spec.checked.time is not TimeModel.SAMPLED and not judged.is_of_messages
     only = asked if narrow else None
     return Source(opened(spec, judged.path, only=only), end, is_cut=True).pieces()

@@ -198,7 +198,7 @@ each with the alternative."""
 def _live_and_listeners(
     arguments: argparse.Namespace, spec: Spec, shown: Output, clock: Clock
 ) -> tuple[Live, Callable[[Callable[[Judgement], object]], object]]:
-    """A running monitor, and the function that registers a further listener for verdicts."""
+    """The monitors, and the function that registers a further listener for their verdicts."""
     hearing: list[Callable[[Judgement], object]] = [shown.judged]
 
     def judged(judgement: Judgement) -> None:

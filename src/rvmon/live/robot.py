@@ -224,7 +224,7 @@ class Robot:
         return ""
 
     def drop(self, dropped: Dropped) -> None:
-        """Tell the monitor of the outage that dropped samples are."""
+        """Report the samples that found the queue full to the monitor, as an outage."""
         self._lost += dropped.count
         self._repeat_outages(dropped.first)
         why = "came faster than they were evaluated"
