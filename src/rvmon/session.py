@@ -119,10 +119,9 @@ class Spec:
             settle: `now` evaluates each sample at once; `next` merges samples with equal stamps
                 and evaluates them when the next stamp arrives.
             sources: the signals and events that can arrive; all others stay unknown.
-            keep: for runs of weeks, the number of newest records kept per requirement and verdict.
-                As verdicts are counted separately, many passes displace no failure. Verdicts and
-                counts stay exact, and the report contains the number of dropped records. Default:
-                all.
+            keep: for runs of weeks, the number of newest records kept per requirement and verdict,
+                so that many passes displace no failure. Verdicts and counts stay exact, and the
+                report contains the number of dropped records. Default: all.
 
         Raises:
             UnknownNameError: a name in `only` or `sources`, or `settle`, does not exist.
@@ -171,8 +170,7 @@ class Spec:
                 inconclusive. With `sources`, missing names are always allowed.
 
         Raises:
-            MissingNameError: a trace in columns lacks the column of a name that a requirement
-                reads.
+            MissingNameError: a trace in columns lacks a name that a requirement reads.
             TraceError: the trace cannot be read; the message names place and cause.
             UnknownNameError: a name in an argument does not exist.
 

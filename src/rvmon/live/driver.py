@@ -44,12 +44,10 @@ class Driver:
         only: ids of the requirements; default all.
         sources: the names that can arrive; default all.
         keep: the most records kept per requirement and verdict; `None`: all.
-        lag_ns: the longest delay of samples with their own stamps. Samples within it are sorted,
-            and all decisions come that much later. Default: the `max delay` of the specification,
-            or 0.
+        lag_ns: the longest delay of samples with their own stamps. Samples within it are sorted, so
+            decisions come that much later. Default: the `max delay` of the specification, or 0.
         room: the most samples in the queue. A sample that finds it full is lost: its signals become
-            unknown until their next value, and its events are unknown at its instant, so that no
-            verdict relies on them.
+            unknown until their next value, and its events at its instant, so no verdict uses them.
         most_robots: the most robots; samples of further robots are refused.
         on_judged: called with each attempt that passes or fails.
         on_failure: called with each attempt that fails.
@@ -281,8 +279,7 @@ class Driver:
         return len(self._waiting)
 
     def _clock_was_set(self, before: int, now: int) -> None:
-        # A jump by years means that a clock which started at 0 was set to the time of day.
-        if now < before or now - before > FAR_NS:
+        if now < before or now - before > FAR_NS:  # by years: a clock that started at 0 was set
             with self._lock:
                 self._stamped = now
                 way = f"back by {format_ticks(before - now)}" if now < before else "on by years"
@@ -301,12 +298,10 @@ class Driver:
 
     @contextmanager
     def _driving(self) -> Iterator[None]:
-        """Exclusive use of the monitors; refuses callbacks, which run in the middle of a step."""
+        """Exclusive use of the monitors; refuses callbacks, which run in mid-step."""
         with self._working:
             if self._is_working:
-                raise RvmonError(
-                    "a callback cannot drive or close its driver, or replace the specification"
-                )
+                raise RvmonError("a callback cannot drive, close or change its own driver")
             self._is_working = True
             try:
                 yield
