@@ -61,3 +61,21 @@ def test_what_an_endless_run_owes_is_told_by_its_last_part():
     (failed, *_) = core.finish().attempts
     assert failed.verdict.name == "FAIL"
     assert failed.reason.startswith("`q` had to come true between 9.98")
+
+
+def test_what_an_attempt_with_let_saw_includes_the_event_that_starts_others():
+    """The runs of open attempts do not hear of such an event; their notes still show it."""
+    spec = rvmon.loads(
+        "spec watch\ntime sampled every 1 ms\nsignal x : real\nevent e\nrequirement R\n"
+        "  upon e\n  let v = x\n  then always[0, 9 ms] x < v + 3\n"
+    )
+    for occurs in (False, True):
+        monitor = spec.monitor()
+        for t in range(4):
+            monitor.step_ns(t * MS, {"x": t / 2, "e": True})
+        monitor.step_ns(4 * MS + 1, {"e": occurs})
+        monitor.step_ns(4 * MS + 2, {"x": 3.2})
+        failed = monitor.advance_ns(6 * MS)
+        assert [(a.number, a.triggered, a.verdict.name) for a in failed] == [(1, 0, "FAIL")]
+        assert dict(failed[0].at_trigger) == {"e": True, "x < v + 3": True}
+        assert dict(failed[0].at_decision) == {"e": occurs, "x < v + 3": False}

@@ -155,6 +155,7 @@ struct run {
     int32_t key;               /* index of its key in the home's keys */
     int32_t judged;            /* the judge of its one attempt, with captured values */
     int32_t starters;          /* judges whose attempts start here, as a bit set */
+    int32_t watched_children;  /* how many of its children are `watched` */
     int32_t judging;           /* judges whose attempts are judged here, as a bit set */
     bool opening;              /* attempts start from the next position on */
     bool over;                 /* `payloads` are of the last position: captures still read them */

@@ -29,6 +29,34 @@ static bool is_read_by_pulses(const plan *all, const part *p, const node_plan *n
            || ((n->parents[1].count == 1) && is_doubt_of_pulse(&p->nodes[parents[0]]));
 }
 
+/* Whether an event only starts attempts with captured values. Their runs need not hear of it: its leaves
+ * are then `unheard`, and notes read them in the parent. Networks log letters of their own, so they hear
+ * everything. */
+static bool only_starts(const plan *all, part *p, const event_plan *e)
+{
+    const int32_t *atoms = LIST(all, e->on_occurrence[1]);
+    bool found = (p->plan->captures.count > 0) && ((e->flags & EVENT_MARKS) == 0);
+    int32_t i;
+    int32_t k;
+    for (i = 0; i < p->plan->judges.count; i++) {
+        found = found && (p->judges[i].automaton >= 0);
+    }
+    for (i = 0; i < e->on_occurrence[1].count; i++) {
+        const list leaves = p->atoms[atoms[i]].nodes[1];
+        for (k = 0; found && (k < leaves.count); k++) {
+            found = is_read_by_pulses(all, p, &p->nodes[LIST(all, leaves)[k]]);
+        }
+    }
+    for (i = 0; found && (i < e->on_occurrence[1].count); i++) {
+        const list leaves = p->atoms[atoms[i]].nodes[1];
+        for (k = 0; k < leaves.count; k++) {
+            p->unheard[LIST(all, leaves)[k]] = 1;
+            p->has_unheard = true;
+        }
+    }
+    return found;
+}
+
 /* Find the pulses of a part; false: memory is short. Runs that capture values keep occurrences, and
  * margins and recorded truths see each position, so parts with these visit all ends of events. */
 bool find_pulses(arena *a, const plan *all, part *p)
@@ -39,7 +67,10 @@ bool find_pulses(arena *a, const plan *all, part *p)
     p->pulses = arena_take(a, (size_t)(p->plan->atoms.count + 1) * sizeof *p->pulses);
     p->pulse_doubts = arena_take(a, (size_t)(p->plan->atoms.count + 1) * sizeof *p->pulse_doubts);
     p->pulsing = arena_take(a, (size_t)(p->plan->events.count + 1) * sizeof *p->pulsing);
-    if ((p->pulses == NULL) || (p->pulse_doubts == NULL) || (p->pulsing == NULL)) {
+    p->starts_only = arena_take(a, (size_t)p->plan->events.count + 1U);
+    p->unheard = arena_take(a, (size_t)p->plan->nodes.count + 1U);
+    if ((p->pulses == NULL) || (p->pulse_doubts == NULL) || (p->pulsing == NULL) || (p->starts_only == NULL)
+        || (p->unheard == NULL)) {
         return false;
     }
     for (i = 0; i < p->plan->atoms.count; i++) {
@@ -62,6 +93,7 @@ bool find_pulses(arena *a, const plan *all, part *p)
                               && (p->events[i].flags == 0) && (all->header->gap == 1)
                               && (p->plan->watches.count == 0);
         p->pulsing[i] = is_pulse ? atom : -1;
+        p->starts_only[i] = only_starts(all, p, &p->events[i]) ? 1 : 0;
     }
     return true;
 }

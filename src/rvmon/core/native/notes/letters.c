@@ -370,3 +370,17 @@ int64_t *next_truths(rv_monitor *m, truths *ring, int32_t words)
     ring->count++;
     return entry_of(ring, ring->count - 1, words);
 }
+
+/* Reset the history of a judge. */
+void clear_noting(run *r, int32_t index)
+{
+    noting *n = r->judges[index].noting;
+    if (n != NULL) {
+        forget_letters(r->home->monitor, n);
+        n->triggers.head = n->triggers.count = 0;
+        n->doubts.head = n->doubts.count = 0;
+        n->state = -1;
+        n->undecidable_since = NEVER;
+        n->began_at = RV_NO_TIME;
+    }
+}

@@ -103,20 +103,6 @@ int rv_keep_notes(rv_monitor *m, rv_let_go let_piece_go, void *user)
     return RV_OK;
 }
 
-/* Reset the history of a judge. */
-void clear_noting(run *r, int32_t index)
-{
-    noting *n = r->judges[index].noting;
-    if (n != NULL) {
-        forget_letters(r->home->monitor, n);
-        n->triggers.head = n->triggers.count = 0;
-        n->doubts.head = n->doubts.count = 0;
-        n->state = -1;
-        n->undecidable_since = NEVER;
-        n->began_at = RV_NO_TIME;
-    }
-}
-
 /* Reset the history: every node has its truth since the first position, `t`. */
 void reset_truth_log(run *r, int64_t t)
 {
@@ -164,16 +150,31 @@ void note_node(run *r, int32_t node, uint8_t was, int64_t t)
     }
 }
 
+/* The run that knows the truths of a node: of events that the run of an attempt does not hear of, its
+ * parent. */
+static const run *knower(const run *r, int32_t node)
+{
+    return ((r->parent != NULL) && (r->part->unheard[node] != 0)) ? r->parent : r;
+}
+
+/* The position of the last change that notes of a run show. */
+int64_t moved_at(const run *r)
+{
+    const int64_t own = r->truth_log->moved_at;
+    const bool hears_all = (r->parent == NULL) || !r->part->has_unheard;
+    return (hears_all || (r->parent->truth_log->moved_at < own)) ? own : r->parent->truth_log->moved_at;
+}
+
 /* The history of a node, if it changed at the last position at which any did; else NULL. */
 static const logged_node *moved_last(const run *r, int32_t node)
 {
-    const logged_node *own = &r->truth_log->nodes[r->part->slots[node]];
-    return ((own->moved_at == r->truth_log->moved_at) && (own->moved_at != RV_NO_TIME)) ? own : NULL;
+    const logged_node *own = &knower(r, node)->truth_log->nodes[r->part->slots[node]];
+    return ((own->moved_at == moved_at(r)) && (own->moved_at != RV_NO_TIME)) ? own : NULL;
 }
 
 truth_times truth_times_of(const run *r, int32_t node, bool before)
 {
-    const logged_node *own = &r->truth_log->nodes[r->part->slots[node]];
+    const logged_node *own = &knower(r, node)->truth_log->nodes[r->part->slots[node]];
     return (before && (moved_last(r, node) != NULL)) ? own->was : own->now;
 }
 
@@ -182,7 +183,6 @@ void pack_truths(const run *r, list nodes, bool before, int64_t *words)
 {
     const int32_t *node = LIST(PLAN(r), nodes);
     const int32_t *end = node + nodes.count;
-    const uint8_t *truth = r->truth;
     int64_t *to = words;
     uint64_t word = 0;
     uint32_t shift = 0;
@@ -194,7 +194,7 @@ void pack_truths(const run *r, list nodes, bool before, int64_t *words)
             word = 0;
             shift = 0;
         }
-        word |= (uint64_t)((was != NULL) ? was->truth : truth[*node]) << shift;
+        word |= (uint64_t)((was != NULL) ? was->truth : knower(r, *node)->truth[*node]) << shift;
         shift += 2;
     }
     if (shift > 0) {

@@ -49,6 +49,7 @@ static inline int64_t *entry_of(const truths *ring, int32_t i, int32_t words)
 }
 
 /* ---- notes.c */
+int64_t moved_at(const run *r);
 truth_times truth_times_of(const run *r, int32_t node, bool before);
 void pack_truths(const run *r, list nodes, bool before, int64_t *words);
 bool pack_leaves(const run *r, int32_t index, bool before, int64_t *words);

@@ -53,13 +53,13 @@ static int64_t note_state(run *r, int32_t index, int64_t t)
     const int32_t *nodes = LIST(PLAN(r), judged->propositions);
     const int32_t leaves = words_for(judged->leaves.count);
     const int32_t letters = words_for(judged->propositions.count);
-    const bool before = t < r->truth_log->moved_at;
+    const bool before = t < moved_at(r);
     int64_t *made;
     int64_t count;
     int32_t i;
     bool awaits_birth;
     drop_open_notes(m);
-    if (!before && (n->state >= 0) && (n->state_at == r->truth_log->moved_at)
+    if (!before && (n->state >= 0) && (n->state_at == moved_at(r))
         && (n->epoch == m->epoch)) {
         return n->state;
     }
@@ -81,7 +81,7 @@ static int64_t note_state(run *r, int32_t index, int64_t t)
     }
     if (!before && !awaits_birth) { /* a birth may change what is shown although no truth changes */
         n->epoch = m->epoch;
-        n->state_at = r->truth_log->moved_at;
+        n->state_at = moved_at(r);
         n->state = made - m->notes;
     }
     return made - m->notes;

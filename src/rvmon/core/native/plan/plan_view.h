@@ -95,11 +95,14 @@ typedef struct {
     quick_signal *quick;       /* by signal */
     int32_t *pulses;           /* by atom, its leaf if nothing sees its end; else -1: input/pulses.c */
     int32_t *pulse_doubts;     /* by such an atom, the DOUBT above its leaf; -1: none */
+    uint8_t *starts_only;      /* by event, whether it only starts attempts with captured values */
+    uint8_t *unheard;          /* by node, whether it is the leaf of such an event */
     int32_t *pulsing;          /* by event, its one atom if only such a pulse reads it; else -1 */
     int32_t *networked;        /* judges decided by a network (not by a chain) */
     int32_t networked_count;
     int32_t *slots;            /* by node, its slot in truth_log; -1: notes do not describe it */
     int32_t logged;            /* number of such slots */
+    bool has_unheard;          /* some node is `unheard` */
     bool has_episodes;         /* some judge is EPISODIC */
     margin_readers readers[2]; /* who reads what for margins, by phase */
     bool restarts;             /* some judge restarts after a failure */

@@ -225,6 +225,12 @@ void mark_lapsed(run *r)
     }
 }
 
+static void set_watched(run *r, bool watched)
+{
+    r->parent->watched_children += (watched ? 1 : 0) - (r->watched ? 1 : 0);
+    r->watched = watched;
+}
+
 /* Check at position `t` of the parent whether the captured values remain known. */
 static void check_captured(run *r, int64_t t)
 {
@@ -246,7 +252,7 @@ static void check_captured(run *r, int64_t t)
             x->trigger_unknown = (trigger != IS_FALSE) && (x->trigger_unknown || (trigger == IS_UNKNOWN));
         }
     }
-    r->watched = r->blurs || ((r->cut < NEVER) && (trigger != IS_FALSE));
+    set_watched(r, r->blurs || ((r->cut < NEVER) && (trigger != IS_FALSE)));
 }
 
 /* Link the run of an attempt below the run in which it was triggered. */
@@ -264,6 +270,7 @@ void adopt(run *parent, run *child)
 /* Release the run of an attempt that is over. */
 void release_attempt_run(run *r)
 {
+    set_watched(r, false);
     if (r->previous_sibling != NULL) {
         r->previous_sibling->sibling = r->sibling;
     } else {
@@ -324,7 +331,7 @@ void check_children(run *r, int64_t t)
     bool some = false;
     bool other_next = false;
     int32_t i;
-    for (one = r->first_child; one != NULL; one = one->sibling) {
+    for (one = r->first_child; (r->watched_children > 0) && (one != NULL); one = one->sibling) {
         if (one->watched) {
             touch_run(one);
             check_captured(one, t);

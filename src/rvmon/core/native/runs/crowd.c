@@ -239,6 +239,27 @@ static const rv_number *key_of(const home *h, const incoming *in)
     return &u->fields[field];
 }
 
+/* Whether runs may miss parts of the inbox that change nothing in them: updates at certain positions, of
+ * which only truths are read. */
+static bool may_be_missed(const home *h, const incoming *in)
+{
+    const run *root = h->root;
+    return (in->update->says == RV_SAYS_YES) && (h->monitor->shapes == NULL) && (GAP(root) > 0)
+           && root->at.started && (root->at.presence == ARE_THERE) && (root->at.lost_count == 0);
+}
+
+/* Whether the runs of attempts need not hear of an event. */
+static bool is_start(const home *h, const incoming *in)
+{
+    return (h->part->starts_only[in->local] != 0) && (h->root->at.phase == 1) && may_be_missed(h, in);
+}
+
+/* Whether runs may hold a signal's value without being called. */
+static bool may_be_held(const home *h, const incoming *in)
+{
+    return (in->update->value.kind != RV_UNKNOWN) && may_be_missed(h, in);
+}
+
 /* Add a run to `called` unless it is in it already. */
 static int32_t called_with(home *h, int32_t count, run *r)
 {
@@ -250,24 +271,29 @@ static int32_t called_with(home *h, int32_t count, run *r)
     return count + 1;
 }
 
-static int32_t called_with_children(home *h, int32_t count, run *r)
+/* Add a run that an event concerns, and those of its attempts, unless the event only starts attempts. */
+static int32_t called_by_event(home *h, int32_t count, run *r, const incoming *in)
 {
     int32_t found = called_with(h, count, r);
     run *child;
+    if (is_start(h, in)) {
+        return found;
+    }
     for (child = r->first_child; child != NULL; child = child->sibling) {
         found = called_with(h, found, child);
     }
     return found;
 }
 
-/* Whether runs may hold signals of the inbox without being called: known values, at certain positions,
- * of which only truths are read. */
-static bool may_be_held(const home *h, const incoming *in)
+/* Add the root and all instances. */
+static int32_t called_instances(home *h, int32_t count)
 {
-    const run *root = h->root;
-    return (in->update->says == RV_SAYS_YES) && (in->update->value.kind != RV_UNKNOWN)
-           && (h->monitor->shapes == NULL) && (GAP(root) > 0) && root->at.started
-           && (root->at.presence == ARE_THERE) && (root->at.lost_count == 0);
+    int32_t found = count;
+    run *one;
+    for (one = h->root; one != NULL; one = one->next) {
+        found = called_with(h, found, one);
+    }
+    return found;
 }
 
 /* Add the runs in which a value of a signal may change a comparison; the others hold it. */
@@ -324,7 +350,8 @@ int32_t call_affected(home *h, int64_t t)
     }
     for (i = 0; i < h->inbox_count; i++) {
         const bool has_key = key_of(h, &h->inbox[i]) != NULL;
-        if (h->inbox[i].event ? !has_key : !may_be_held(h, &h->inbox[i])) {
+        const incoming *in = &h->inbox[i];
+        if (in->event ? !(has_key || is_start(h, in)) : !may_be_held(h, in)) {
             return -1;
         }
         keyed += has_key ? 1 : 0;
@@ -334,17 +361,18 @@ int32_t call_affected(home *h, int64_t t)
     for (i = 0; i < count; i++) {
         h->runs[h->called[i]]->call = h->call;
     }
-    count = (keyed > 0) ? called_with_children(h, count, h->root) : called_with(h, count, h->root);
-    for (i = 0; (keyed > 0) && (i < h->inbox_count); i++) {
-        const rv_number *value = key_of(h, &h->inbox[i]);
+    count = called_with(h, count, h->root);
+    for (i = 0; i < h->inbox_count; i++) {
+        const incoming *in = &h->inbox[i];
+        const rv_number *value = key_of(h, in);
         run *r = (value != NULL) ? instance_of(h, value) : NULL;
-        if (r != NULL) {
-            count = called_with_children(h, count, r);
-        }
-    }
-    for (i = 0; (keyed < h->inbox_count) && (i < h->inbox_count); i++) {
-        if (!h->inbox[i].event) {
-            count = called_by_value(h, count, h->inbox[i].local, &h->inbox[i].update->value);
+        if (!in->event) {
+            count = called_by_value(h, count, in->local, &in->update->value);
+        } else if (value == NULL) {
+            count = called_instances(h, count);
+        } else {
+            count = called_by_event(h, count, h->root, in);
+            count = (r != NULL) ? called_by_event(h, count, r, in) : count;
         }
     }
     if ((h->part->plan->each != 0) && (keyed < h->inbox_count)) {

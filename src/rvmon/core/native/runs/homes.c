@@ -102,6 +102,7 @@ static void clear_home(home *h)
     one->opening = false;
     one->over = false;
     one->watched = false;
+    one->watched_children = 0;
     one->blurs = false;
     one->touched_at = 0;
     one->doubted = p->each != 0;

@@ -352,6 +352,7 @@ run *forked(const run *r)
     made->over = r->over || r->at.gathered;
     made->at.gathered = false;
     made->watched = false;
+    made->watched_children = 0;
     for (i = 0; i < r->part->plan->signals.count; i++) {
         made->value[i] = r->value[i];
         made->spans[i] = NO_SPAN; /* the fork compares with numbers of its own */

@@ -165,6 +165,7 @@ static void carry_child(carrier *c, home *h, run *r, int32_t parent)
         enlist(r, true);
     }
     carry_run(c, r);
+    r->parent->watched_children += (c->reading && r->watched) ? 1 : 0;
 }
 
 /* Map run ids to the ids that they get when read back, in the order of writing. */

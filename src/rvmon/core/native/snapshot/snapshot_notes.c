@@ -63,12 +63,12 @@ static void carry_shared(carrier *c, run *r, int32_t index)
 {
     rv_monitor *m = c->m;
     noting *n = r->judges[index].noting;
-    int64_t place = ((n->epoch == m->epoch) && (n->state_at == r->truth_log->moved_at)) ? n->state : -1;
+    int64_t place = ((n->epoch == m->epoch) && (n->state_at == moved_at(r))) ? n->state : -1;
     carry_long(c, &place, -1, m->note_count);
     if (c->reading && !c->refused && (place >= 0)) {
         demand(c, is_state(c, &r->part->judges[index], place));
         n->state = place;
-        n->state_at = r->truth_log->moved_at;
+        n->state_at = moved_at(r);
         n->epoch = m->epoch;
     }
 }
