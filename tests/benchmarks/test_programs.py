@@ -28,5 +28,5 @@ def test_each_helps(
 @pytest.mark.slow
 def test_hard_streams_have_neighbours() -> None:
     lines = list(cliffs.lines(60, 1))
-    assert len(lines) == 2 + 15 + 3 + 12 + 15
+    assert len(lines) == 2 + 15 + 3 + 13 + 15
     assert all(line.count("|") == 8 for line in lines[2:])
