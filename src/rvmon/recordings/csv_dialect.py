@@ -19,7 +19,7 @@ from msgspec import Struct, structs
 
 from rvmon.errors import TraceError
 from rvmon.recordings.csv_rows import split_lines
-from rvmon.recordings.csv_text import native_csv
+from rvmon.recordings.csv_text import line_ends, native_csv
 from rvmon.recordings.places import opened
 from rvmon.texts import shorten
 from rvmon.trace.schema import Schema, Stamps
@@ -179,7 +179,8 @@ def _plain_lines(text: io.TextIOWrapper, dialect: Dialect, stamps: Stamps | None
     """
     made: Callable[[list[str]], list[str]] | None = None
     written: list[str] = []
-    writer = csv.writer(SimpleNamespace(write=written.append), lineterminator="\n")
+    # So that it quotes lone carriage returns, too.
+    writer = csv.writer(SimpleNamespace(write=written.append), lineterminator="\r\n")
     lines = taken = again = 0
     source = _Lines(text)
     for counted, row in _rows(source, dialect):
@@ -194,11 +195,12 @@ def _plain_lines(text: io.TextIOWrapper, dialect: Dialect, stamps: Stamps | None
             except TraceError as error:
                 raise TraceError(f"line {number}: {error}") from None
         writer.writerow(row)
-        plain = written.pop()
+        plain = written.pop().removesuffix("\r\n")
+        ends = line_ends(plain) + 1
         # The header is moved to the first line; all other lines keep their numbers.
-        missing = number - lines - plain.count("\n") if lines else 0
-        lines += missing + plain.count("\n")
-        yield "\n" * missing + (plain if source.is_ended else plain[:-1])
+        missing = number - lines - ends if lines else 0
+        lines += missing + ends
+        yield "\n" * missing + plain + "\n" * source.is_ended
         # Convert in bulk as long as possible; where that fails, go on row by row for a while.
         if number >= again and made is _unchanged and dialect.separator:
             yield "\n" * (number - lines)

@@ -125,9 +125,14 @@ class CsvText(Generic[_Found]):
     def cut(self, end: int) -> str:
         """Take the text up to an offset."""
         taken = self.rest[self.start : end].decode()
-        self.line += max(1, taken.count("\n") + taken.count("\r") - taken.count("\r\n"))
+        self.line += max(1, line_ends(taken))
         self.start = end
         return taken
+
+
+def line_ends(text: str) -> int:
+    """The number of line ends in a text: newlines, carriage returns, or both together."""
+    return text.count("\n") + text.count("\r") - text.count("\r\n")
 
 
 _Read = TypeVar("_Read")

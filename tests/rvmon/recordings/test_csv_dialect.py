@@ -1,6 +1,7 @@
 """CSV as other tools write it gives the records of plain CSV."""
 
 import random
+from itertools import islice
 
 import pytest
 from tests.rvmon.recordings.test_csv_batch import read
@@ -138,6 +139,19 @@ def test_faults_are_told_with_the_line_that_they_are_on(tmp_path):
         path.write_text(text)
         with pytest.raises(TraceError, match=told):
             spec.evaluate(path, time=time)
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_lines_within_a_cell_keep_their_numbers(end, tmp_path):
+    spec = rvmon.loads(SPEC)
+    rows = [f"{t};;{t / 4}" for t in range(10)]
+    rows += [*(f'{t};"one{end}two{end}{end}three";1' for t in range(10, 14)), "14;;x"]
+    path = tmp_path / "a.csv"
+    path.write_bytes("\n".join(["t;note;speed", *rows, ""]).encode())
+    samples = iter(spec.recording(path))
+    assert len(list(islice(samples, 13))) == 13
+    with pytest.raises(TraceError, match="line 28: column `speed`: `x`"):
+        list(samples)
 
 
 def test_a_unit_in_a_name_is_compared(tmp_path):
