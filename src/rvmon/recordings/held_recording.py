@@ -114,9 +114,9 @@ class UnknownWhileLost:
         self._lasting: list[tuple[int, Set[str]]] = []  # current outages: end and names
 
     def parts(self, piece: Batch | Sample) -> Iterator[Batch | Sample]:
-        """Yield the next piece in parts without lost names; a sample tells where names become lost.
+        """Yield the next piece in parts, without the names that are lost there.
 
-        Pieces must be passed in order.
+        A sample at the start of an outage makes its names unknown. Pieces must come in order.
         """
         for part in _parts(piece, self._turns):
             first = part.t if isinstance(part, Sample) else int(part.times[0])

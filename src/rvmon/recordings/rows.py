@@ -62,7 +62,7 @@ def doubt_unit(times: Sequence[int], stamps: Stamps) -> list[Health]:
 ROOM = 65_536  # the most rows that are held back to sort in late ones
 
 LEAP = 365 * 86_400 * TICKS_PER_SECOND
-"""A year, in ticks. No recording pauses that long, so one of the two stamps is of another clock."""
+"""A year, in ticks. No recording pauses that long, so one of the stamps is from another clock."""
 
 Row = tuple[int, int, Mapping[str, Value]]  # number, ticks, values by name
 

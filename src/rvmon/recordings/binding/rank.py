@@ -99,7 +99,7 @@ def fitting(wanted: Wanted, candidates: Iterable[Candidate]) -> list[tuple[float
 
 
 def of_same_dimension(wanted: Wanted, candidates: Iterable[Candidate]) -> list[Candidate]:
-    """Candidates measured in the declared unit, whatever their names; most shared words first."""
+    """Candidates with the dimension of the declared unit, those with most shared words first."""
     type_ = wanted.type
     if type_ is None or not type_.unit:
         return []
