@@ -4,9 +4,8 @@
 
 For each file `--count` changes are drawn with a seed, evenly over their kinds. Each mutant is
 compiled, linked with the other files, and judges recorded random cases on which oracle and core
-agree (core_replay.c). It is killed if it gives other results, crashes or hangs. Mutants that do not
-compile, or compile to the same machine code, are not counted. Prints each survivor and the counts
-of each file; exits 1 if a mutant survives.
+agree (core_replay.c). It is killed if it gives other results, crashes or hangs. Those that do not
+compile, or to the same code, do not count. Prints survivors and counts; exits 1 if one survives.
 """
 
 from __future__ import annotations
@@ -230,11 +229,7 @@ def _changes(line: str) -> Iterator[tuple[str, int, int, str]]:
 
 
 def draw(found: Iterable[Mutant], count: int, seed: int) -> list[Mutant]:
-    """Draw a seeded sample, taking the kinds of change in turn.
-
-    The order within a kind depends only on each mutant itself, so code elsewhere does not change
-    it.
-    """
+    """Draw a seeded sample, kinds in turn, in an order that depends on each mutant alone."""
     kinds: dict[str, list[Mutant]] = {}
     for mutant in found:
         kinds.setdefault(mutant.kind, []).append(mutant)

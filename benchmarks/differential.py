@@ -30,9 +30,8 @@ from rvmon.errors import RvmonError
 from rvmon.execute.parallel import execute
 
 Judge = Callable[..., None]
-"""Takes a `Campaign`, a seed, a range of case numbers, and settings by name, and adds the results
-of these cases. May run in another process. The first line of its docstring says what it
-compares."""
+"""Adds the results of a range of cases to a `Campaign`, from a seed and named settings, perhaps in
+another process. The first line of its docstring says what it compares."""
 
 _SPECS = "specifications"
 _ASKED = "formulas for each way to ask"
@@ -60,8 +59,7 @@ def settings_of(judge: Judge, given: Sequence[str]) -> dict[str, Any]:
     """The settings of a comparison, with the given values; for dataclasses, of their fields.
 
     Raises:
-        ValueError: a setting is unknown.
-        ValidationError: a value does not have the type of its setting.
+        ValueError: a setting is unknown, or a value not of its type (`ValidationError`).
     """
     left = dict(entry.partition("=")[::2] for entry in given)
     found: dict[str, Any] = {}

@@ -5,8 +5,7 @@
 
 `soak` feeds a sample per millisecond, in a pattern that repeats every second: overlapping attempts,
 recurring keys, NaN, a signal that becomes stale. The number of attempts that pass and fail in each
-second is known, and compared at the end. Prints memory after each tenth of the run, and the times
-of steps, including the time to read the clock.
+second is known, and compared at the end. Prints memory after each tenth, and the times of steps.
 
 `kills` starts resumable runs (`rvmon watch --state`, `rvmon run --resume`, shards, a campaign),
 kills them at random points, and restarts them until they end. Their output is compared with that of
@@ -173,8 +172,7 @@ def _kept(out: Path) -> int:
 def _resumed(kind: str, folder: Path, kills: int, dice: random.Random) -> Counter[str]:
     """Run commands once undisturbed, then kill and restart them until there were enough kills.
 
-    Each kill interrupts real work: it comes when the journal has grown by a random size since the
-    process started.
+    Each kill interrupts real work: it comes when the journal has grown by a random size.
     """
     (folder / "s.rv").write_text(RESUMED_SPEC)
     for number in range(100):

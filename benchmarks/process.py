@@ -43,10 +43,7 @@ def measured(
     environment: Mapping[str, str] | None = None,
     folder: Path | None = None,
 ) -> Cost:
-    """Run a program for at most `limit` seconds in at most `memory` bytes.
-
-    It is killed if this function is interrupted.
-    """
+    """Run a program for at most `limit` seconds in `memory` bytes; an interrupt kills it."""
     began, ended, peak = time.monotonic(), 0, 0.0
     with tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
         process = subprocess.Popen(

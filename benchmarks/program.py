@@ -64,10 +64,7 @@ def _add(parser: argparse.ArgumentParser, command: Callable[..., int | None]) ->
 
 
 def in_turn(contenders: Sequence[T], repeats: int) -> Iterator[tuple[int, T]]:
-    """Yield each contender `repeats` times, in passes that start with a different contender.
-
-    Slow phases of the machine then affect all contenders alike.
-    """
+    """Yield all in `repeats` passes, each from another start: slow phases then affect all alike."""
     for number in range(repeats):
         first = number % max(len(contenders), 1)
         yield from ((number, one) for one in (*contenders[first:], *contenders[:first]))

@@ -8,7 +8,7 @@ C++, which is built if g++ and Boost are installed, and read a robot's files: a 
 with DuckDB, the same as other programs write it, many, and a tiny one. A ratio is the cost of the
 first contender of a group over that of another, given only if both find the same failures. `cliffs`
 are hard streams beside comparable easy ones. `differences` are formulas that peers read
-differently. The page is printed, or written to the file; `--quick` takes a few minutes.
+differently. The page is printed or written to a file; `--quick` takes minutes.
 """
 
 from __future__ import annotations

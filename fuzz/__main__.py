@@ -4,8 +4,7 @@ Readers are fuzzed by atheris (`pip install atheris`), the native code by AFL++,
 (Debian's packages afl++ and libclang-rt-14-dev). Each target gets an equal share of the time, and
 continues from the inputs it found before, in the folder of `--out`. Prints for each target the
 number of inputs, how they ended, the coverage reached, and the inputs that failed; exits 1 if one
-did. Once the failure of a reader is fixed, its input becomes a file of `fuzz/corpus`, which a test
-reads.
+did. Inputs of readers whose failure is fixed become files of `fuzz/corpus`, which a test reads.
 """
 
 from __future__ import annotations

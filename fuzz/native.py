@@ -3,9 +3,8 @@
 The bytes of a plan or a snapshot get a matching hash, so that the fuzzer gets past that check.
 Accepted bytes judge some samples. Each run is repeated after a reset, and with other monitors that
 continue it from snapshots; both must give the same results. Then it is repeated with limited
-memory, and must not be green. Plans for the search of models are searched with bounds of 32 and of
-64 bits, which must agree. An input fails if the core crashes or hangs, or if AddressSanitizer or
-UBSan reports an error.
+memory, and must not be green. Models are searched with bounds of 32 and of 64 bits, which must
+agree. An input fails if the core crashes or hangs, or if a sanitizer reports an error.
 """
 
 from __future__ import annotations

@@ -2,8 +2,7 @@
 
 The extension is built in a copy of the package, so the installed one stays unchanged. In the copy
 each block of a monitor's memory is allocated separately, so that accesses beyond it are detected.
-Leaks are not checked here, because Python itself leaves memory unfreed at its end; tests of the
-core check what it must free.
+Leaks are not checked: Python itself leaves memory unfreed, and tests check what the core frees.
 """
 
 from __future__ import annotations
@@ -19,9 +18,8 @@ COPY = ROOT / "out" / "sanitized"
 GROWN = "void *widened("
 MEMORY = "src/rvmon/core/native/memory.c"
 FLAGS = "-g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all"
-# The tests also cover our own declarations of Python's C API. Memory comes from malloc, where each
-# block is guarded: Python's pools would hide an access beyond a block, and running all of Python
-# without pools takes twice as long.
+# The tests also cover our own declarations of the C API. Memory comes from malloc, which guards
+# each block; Python's pools would hide an overrun, and all of Python without pools is slow.
 FLAGS += " -DRVMON_OWN_PYTHON_H -DPyMem_Malloc=malloc -DPyMem_Calloc=calloc"
 FLAGS += " -DPyMem_Realloc=realloc -DPyMem_Free=free -DGUARDED_MOST=SIZE_MAX"
 

@@ -194,8 +194,7 @@ def judge_forecasts(
     """Verdicts and forecasts of open attempts against a tableau.
 
     Each formula is judged on `words` words. Timed formulas have windows of a few ticks, in held
-    time. The tableau gets them unrolled, and a forecast that only the tableau gives is counted as
-    missed.
+    time, and are unrolled for the tableau. A forecast that only the tableau gives counts as missed.
     """
     for number in numbers:
         rng = random.Random(f"{seed}/{number}")

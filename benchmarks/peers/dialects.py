@@ -2,8 +2,8 @@
 
 A translation keeps the truth at every tick. If a peer reads an operator differently from
 SEMANTICS 2, another formula with the same meaning is used; what the peer cannot express is refused.
-Bounds are in ticks, and the peer's unit of time is one tick. A proposition is a column of the trace
-(`spelling`), `true` a column that is always 1.
+Bounds are in ticks, the peer's unit of time. A proposition is a column of the trace (`spelling`),
+`true` a column that is always 1.
 """
 
 from __future__ import annotations

@@ -120,6 +120,14 @@ def robots(monkeypatch):
     made.kept.clear()  # they leave the domain
 
 
+def is_matched(matches):
+    """Whether an endpoint has a match; `matches` lists them."""
+    try:
+        return bool(matches())
+    except IndexError:  # the binding counts them first, and one came before it listed them
+        return False
+
+
 @pytest.mark.process
 def test_a_second_publisher_of_another_type_cannot_be_heard_over_dds(robots):
     """What the topic feeds is unknown for good, also where something of it was lost and found."""
@@ -128,7 +136,7 @@ def test_a_second_publisher_of_another_type_cannot_be_heard_over_dds(robots):
     live = Live(robots.spec)
     kind, writer = robots.publisher("Float64")
     with live, DdsSource(MessageFeed(live, robots.spec.schema), domain=robots.domain):
-        until(writer.get_matched_subscriptions)
+        until(lambda: is_matched(writer.get_matched_subscriptions))
         writer.write(kind(data=0.5))
         until(lambda: live.status() and live.status()[""].samples == 1)
         robots.publisher("Float32")
@@ -188,10 +196,10 @@ def test_what_finds_no_room_in_dds_is_lost(robots, monkeypatch):
 
     kind, writer = robots.publisher("Float64")
     with dds.DdsSource(Slow(driver, robots.spec.schema), domain=robots.domain) as source:
-        until(writer.get_matched_subscriptions)
+        until(lambda: is_matched(writer.get_matched_subscriptions))
         # What is sent before the reader knows its writer, too, goes unheard.
         readers = source._readers
-        until(lambda: any(reader.get_matched_publications() for reader, _ in [*readers.values()]))
+        until(lambda: any(is_matched(r.get_matched_publications) for r, _ in [*readers.values()]))
         writer.write(kind(data=0.5))
         until(lambda: taken)
         writer.write(kind(data=0.5))
