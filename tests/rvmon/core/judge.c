@@ -10,6 +10,23 @@
 
 #define MOST 256
 
+/* Allocations that a limited heap still grants; negative: all. */
+static int64_t left = -1;
+
+static void *resize(void *block, size_t size)
+{
+    if (left == 0) {
+        return NULL;
+    }
+    left -= (left > 0) ? 1 : 0;
+    return realloc(block, size);
+}
+
+static void *allocate(size_t size)
+{
+    return resize(NULL, size);
+}
+
 static void *copied(const void *from, size_t size)
 {
     void *made = malloc(size + 1);
@@ -93,12 +110,13 @@ int main(void)
     bool noting = false;
     while (scanf(" %c %" SCNd64, &what, &t) == 2) {
         int code = RV_OK;
-        if (what == 'c') { /* a plan, and the size of a block; -1: a heap */
-            rv_memory memory = {malloc, realloc, free, NULL, 0};
+        if (what == 'c') { /* a plan, and the size of a block; -1: a heap; -2 - n: n allocations of it */
+            rv_memory memory = {allocate, resize, free, NULL, 0};
             int64_t size;
             if (scanf("%" SCNd64, &size) != 1) {
                 return 2;
             }
+            left = (size < -1) ? -2 - size : -1;
             if (size >= 0) {
                 memory.allocate = NULL;
                 memory.release = NULL;

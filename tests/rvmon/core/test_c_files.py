@@ -146,6 +146,31 @@ def test_short_memory_is_never_green(exported):
     assert spoilt > 500
 
 
+STALE = """
+signal p : bool stale after 9 ns
+signal q : bool
+requirement R
+  whenever historically[0 ns, 3 ns] p
+  then within 99 ns q
+"""
+"""An attempt starts and its trigger becomes unknown within one call, which leaves the queue."""
+
+
+def test_an_allocation_that_fails_is_never_green(core_object, tmp_path):
+    """Whichever it is, of a heap of which each block is an allocation: attempts stand in queues."""
+    command = (*WATCHED, "-DCHUNK_SIZE=((size_t)16)")
+    samples = Sample(0, {"p": False, "q": False}), Sample(1, {"p": True}), Sample(50, {})
+    cases = [*judged("heap", 12), Case(rvmon.loads(STALE).checked, samples)]
+    exported = Exported(tmp_path, cases, command, core_object(*command))
+    spoilt = 0
+    for number, whole in enumerate(exported.judge([(number, HEAP) for number in range(13)])):
+        runs = exported.judge([(number, HEAP - 1 - granted) for granted in range(150)])
+        assert runs[0] == ["none"]
+        begun = [run for run in runs if run != ["none"]]
+        spoilt += sum(sum(map(is_spoilt, halves(run), halves(whole))) for run in begun)
+    assert spoilt > 250
+
+
 def halves(run):
     """What was printed of the first run, and of the second."""
     ends = [place for place, line in enumerate(run) if line.startswith("e ")]

@@ -80,7 +80,7 @@ bool queue_is_empty(const judge *j);
 void queue_visit(run *r, int32_t index, int64_t t);
 void queue_pass(run *r, int32_t index, int64_t t);
 void queue_reach(run *r, int32_t index, int64_t t);
-bool queue_begin(run *r, int32_t index, int64_t t);
+void queue_begin(run *r, int32_t index, int64_t t);
 void dissolve_queue(run *r, int32_t index, int64_t tick);
 void queue_close(run *r, int32_t index, int64_t end, int64_t reached);
 const queued *queue_item(const judge *j, int32_t i);

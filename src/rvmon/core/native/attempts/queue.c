@@ -226,9 +226,10 @@ static void begin_in(const queueing *g, segment *s, int64_t t)
     s->count++;
 }
 
-/* Start an attempt at `t`: step it once, report it if that decides it, else append it. The last segment
- * is where the youngest stand. False: memory is short. */
-bool queue_begin(run *r, int32_t index, int64_t t)
+/* Start an attempt at `t`: step it once, report it if that decides it, else append it to the last
+ * segment, which holds the youngest attempts, or to a new one. If memory is short, the queue stays as it
+ * was. */
+void queue_begin(run *r, int32_t index, int64_t t)
 {
     const queueing g = queueing_of(r, index);
     const beginning *begun = begun_at(&g, t);
@@ -237,7 +238,7 @@ bool queue_begin(run *r, int32_t index, int64_t t)
     queued *made = queue_slot(r->home->monitor, g.a, q, q->count, true);
     int64_t due;
     if (made == NULL) {
-        return false;
+        return;
     }
     if (r->home->moves != NULL) {
         count_begin(r, index, t);
@@ -259,12 +260,13 @@ bool queue_begin(run *r, int32_t index, int64_t t)
         }
         report_queued(&g, q->count - 1, &initial, begun->location == PASSED, t);
         q->count--;
-        return true;
+        return;
     }
     if ((last == NULL) || !begins_in(&g, begun, last, t)) {
         last = next_segment(r->home->monitor, &q->now);
         if (last == NULL) {
-            return false;
+            q->count--; /* every item belongs to a segment */
+            return;
         }
         set_begun(last, begun->location, begun->sliding);
     }
@@ -275,7 +277,6 @@ bool queue_begin(run *r, int32_t index, int64_t t)
         due = t + 1;
     }
     set_rule_due(r, index, least(r->rules.due[index], due));
-    return true;
 }
 
 /* The next attempt of a judge's queue from a place on, which starts as zeros, oldest first, as it stands at

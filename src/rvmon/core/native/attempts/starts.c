@@ -103,7 +103,7 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
         if (r->margins != NULL) {
             margins_begin(r, index, t, measured_attempt(r, triggered, j->count + 1U));
         }
-        (void)queue_begin(r, index, t);
+        queue_begin(r, index, t);
         return;
     }
     at = new_attempt(r);
