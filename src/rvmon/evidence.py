@@ -85,7 +85,7 @@ def unpack(path: str) -> dict[str, bytes]:
     """
     try:
         if Path(path).stat().st_size > MOST_BYTES or not Path(path).is_file():
-            raise RvmonError(f"{path} is no file, or larger than {MOST_BYTES >> 30} GB")
+            raise RvmonError(f"{path} is not a file, or is larger than {MOST_BYTES >> 30} GB")
         data = Path(path).read_bytes()
     except OSError as error:
         raise RvmonError(f"{path}: {error.strerror or error}") from None
@@ -98,11 +98,11 @@ def unpack(path: str) -> dict[str, bytes]:
             is_doubled = len({entry.filename for entry in found}) < len(found)
             if is_packed or is_doubled or sum(entry.file_size for entry in found) > len(data):
                 raise RvmonError(
-                    f"{path} is no evidence: entries are compressed, doubled or overlap"
+                    f"{path} is not an evidence archive: entries are compressed, doubled or overlap"
                 )
             entries = {entry.filename: packed.read(entry) for entry in found}
     except (zipfile.BadZipFile, EOFError, ValueError, NotImplementedError, RuntimeError) as error:
-        raise TamperedError(f"{path} is no evidence, or a damaged one: {error}") from None
+        raise TamperedError(f"{path} is not an evidence archive, or is damaged: {error}") from None
     sums = entries.pop(SUMS, b"").decode("utf-8", "replace")
     # `pack` depends only on the entries, so any other byte in the file is a change.
     if pack(entries) != data:
@@ -319,7 +319,9 @@ def opened_evidence(path: str) -> Iterator[Kept]:
         if about.judging is not None and about.specs.keys() != {""}:
             raise ValueError("recordings are checked against one specification")
     except (KeyError, ValueError, csv.Error) as error:
-        raise RvmonError(f"{path} is no evidence that this rvmon can read: {error}") from None
+        raise RvmonError(
+            f"{path} is not an evidence archive that this rvmon can read: {error}"
+        ) from None
     judged = items.keys() if about.judging else {item.partition("/")[0] for item in items}
     known = about.recordings if about.judging else about.specs
     if other := judged - known.keys():

@@ -242,7 +242,7 @@ def _read_description(packed: zipfile.ZipFile) -> Case:
 def _unpack(packed: zipfile.ZipFile, folder: Path) -> None:
     entries = [entry for entry in packed.infolist() if not entry.is_dir()]
     if len(entries) > MOST_FILES:
-        raise RvmonError(f"contains more than {MOST_FILES} files, and is no reproducer")
+        raise RvmonError(f"contains more than {MOST_FILES} files, and is not a reproducer")
     left = MOST_BYTES
     for entry in entries:
         target = path_inside(folder, entry.filename)

@@ -54,8 +54,8 @@ def test_numpy_numbers_are_seconds(spec):
 @each(
     ("t", "values", "message"),
     [
-        ("a", {}, "time 'a' is no finite number"),
-        (None, {}, "time None is no finite number"),
+        ("a", {}, "time 'a' is not a finite number"),
+        (None, {}, "time None is not a finite number"),
         (float("inf"), {}, "not finite"),
         (np.float32("nan"), {}, "not finite"),
         (2, {"gap": np.array([1.0, 2.0])}, "`gap`: expected a number, found array"),
@@ -85,7 +85,7 @@ def test_a_monitor_takes_the_values_that_recordings_may_have(spec, one):
 
 @each("trace", [None, 5, [5], [(None, {})], [(0, 5)], [(0,)]])
 def test_a_wrong_trace_is_told(spec, trace):
-    with pytest.raises(TraceError, match=r"expected|no finite number"):
+    with pytest.raises(TraceError, match=r"expected|not a finite number"):
         spec.evaluate(trace)
 
 
@@ -102,7 +102,7 @@ def test_ticks_given_online_are_whole_numbers(spec, wrong):
     monitor.step_ns(1, {"knock": True, "closed": True})
     ends = () if wrong is None else (monitor.finish_ns,)
     for call in (lambda t: monitor.step_ns(t, {}), monitor.advance_ns, *ends):
-        with pytest.raises(TraceError, match=r"no whole number|out of range") as told:
+        with pytest.raises(TraceError, match=r"not a whole number|out of range") as told:
             call(wrong)
         assert len(str(told.value)) < 200
     assert [attempt.decided for attempt in monitor.advance_ns(5_000_000_000)] == [2_000_000_002]

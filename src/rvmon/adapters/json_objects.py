@@ -74,7 +74,7 @@ class JsonObjects:
             if not values:
                 return  # it contains no declared name
             column = DEFAULT_COLUMNS[0] if spec.schema.stamps is None else spec.schema.stamps.column
-            raise TraceError(f"there is no time `{column}`, so it is unknown when it was")
+            raise TraceError(f"there is no time `{column}`, so the time of the sample is unknown")
         if is_old:
             values = {name: value for name, value in values.items() if name in spec.schema.signals}
         if len(self.ignored) > self._logged:
@@ -212,7 +212,7 @@ def feed_lines(objects: JsonObjects, lines: Iterable[bytes], robot: str | None =
 def _name_of_robot(fields: object, robot: str) -> str:
     name = fields.pop(robot, None) if isinstance(fields, dict) else None
     if not isinstance(name, str | int) or isinstance(name, bool):
-        raise TraceError(f"there is no name of a robot in `{robot}`")
+        raise TraceError(f"there is no robot name in `{robot}`")
     return str(name)
 
 

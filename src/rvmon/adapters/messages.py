@@ -99,8 +99,8 @@ class MessageFeed:
         try:
             yield
         except Exception as error:  # noqa: BLE001 - nobody else would notice
-            _log.exception("no further message is received")
-            why = f"no message is heard any more ({type(error).__name__})"
+            _log.exception("no more messages are received")
+            why = f"no more messages are received ({type(error).__name__})"
             self._driver.lose(robot=self._robot, why=why)
 
     def set_time(self, seconds: int, nanoseconds: int) -> None:

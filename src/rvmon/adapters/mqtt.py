@@ -61,7 +61,7 @@ def address_of(url: str) -> Address:
     try:
         port = parts.port or _PORT
     except ValueError:
-        raise RvmonError(f"{url}: its port is no number up to 65535: {form}") from None
+        raise RvmonError(f"{url}: its port is not a number up to 65535: {form}") from None
     if parts.scheme != "mqtt" or not parts.hostname or not topics:
         raise RvmonError(f"{url}: {form}")
     if "#" in levels[:-1] or any(

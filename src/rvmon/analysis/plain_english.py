@@ -302,5 +302,5 @@ def _past(compiled: CompiledRequirement) -> str:
         return "to the position before" if steps else ""
     bounds = [node.high for node in since if node.high is not None]
     if len(bounds) < len(since):
-        return "over all that was"
+        return "over the whole past"
     return f"over the last {format_duration(sum(bounds) if len(bounds) > 1 else bounds[0])} at most"

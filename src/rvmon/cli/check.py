@@ -133,14 +133,14 @@ def _lines(requirement: Requirement) -> Iterator[str]:
     }
     again = ""
     if requirement.for_each is not None:
-        again = f", for each {requirement.for_each.name} anew"
+        again = f", separately for each {requirement.for_each.name}"
     elif requirement.captures:
-        again = ", for each open attempt anew"
+        again = ", separately for each open attempt"
     for text, window in windows.items():
         yield f"memory: {requirement.id} keeps {text} in {_of(window)}{again}"
     if len(windows) > 1:
         fixed = sum(_fixed(window) for window in windows.values())
-        yield f"memory: {requirement.id} keeps {fixed:,} bytes in all, and what is in its windows"
+        yield f"memory: {requirement.id} keeps {fixed:,} bytes, plus the contents of its windows"
 
 
 def _fixed(window: WindowValue) -> int:

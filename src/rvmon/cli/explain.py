@@ -44,7 +44,7 @@ def _ids(named: list[str], spec: Spec) -> list[str]:
     if len(named) > 2 or (len(named) == 2 and named[0] == named[1]):
         raise RvmonError("error: expected one requirement, or two different ones to compare")
     if not spec.requirements:
-        raise RvmonError("error: there is no requirement: there is nothing to explain")
+        raise RvmonError("error: the specification has no requirement to explain")
     return named or list(spec.requirements)
 
 

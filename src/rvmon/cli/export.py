@@ -28,7 +28,9 @@ def run_export(arguments: argparse.Namespace) -> int:
         from rvmon.session import load
 
         if arguments.to == "uppaal":
-            raise RvmonError(f"{arguments.subject} is no model (.ta): UPPAAL has no specifications")
+            raise RvmonError(
+                f"{arguments.subject} is not a model (.ta): UPPAAL has no specifications"
+            )
         spec = load(arguments.subject, const=constants_of(arguments.const))
         ids = asked_ids(arguments, spec)
         if not spec.requirements:

@@ -118,7 +118,7 @@ def _entries(path: Path, heading: bytes) -> list[_Entry]:
     try:
         return [msgspec.json.decode(entry, type=_Entry) for entry in (lines or [])[1:]]
     except msgspec.MsgspecError:
-        raise RvmonError(f"{path} is no unfinished run: leave out --resume") from None
+        raise RvmonError(f"{path} is not an unfinished run: leave out --resume") from None
 
 
 def _judged_before(

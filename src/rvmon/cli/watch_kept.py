@@ -84,7 +84,7 @@ def watch_kept(
             )
         if monitor.taken:
             count = f" after {monitor.taken:,} lines"
-            how = count if is_file else "; what came since its last line is lost"
+            how = count if is_file else "; lines that arrived after its last one are lost"
             warn(f"{arguments.state}: the run continues{how}")
         try:
             if is_file:
@@ -125,7 +125,7 @@ def watch_kept(
 
 def no_line(source: str) -> RvmonError:
     """The error that no line came, which is no success."""
-    return RvmonError(f"error: {source}: there is no line: nothing was evaluated")
+    return RvmonError(f"error: {source}: it has no lines: nothing was evaluated")
 
 
 def _after_judged_lines(

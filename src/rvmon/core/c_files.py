@@ -136,19 +136,19 @@ def _header(spec: CheckedSpec, packed: Packed, prefix: str) -> Iterator[str]:
         for attempts in range(FEWEST, MOST + 1)
     )
     yield _remark(
-        f"The plan of `{comment(spec.name)}`, made by rvmon {__version__} for the core beside it "
-        f"({CORE}.h) and processors that are {sys.byteorder}-endian."
+        f"The plan of `{comment(spec.name)}`, made by rvmon {__version__} for the core in the same "
+        f"folder ({CORE}.h) and for {sys.byteorder}-endian processors."
     )
     yield from ("", f"#ifndef {upper}_PLAN_H", f"#define {upper}_PLAN_H", "")
     yield from (f'#include "{CORE}.h"', "")
     yield from ("#ifdef __cplusplus", 'extern "C" {', "#endif", "")
     yield from (f"#define {upper}_PLAN_SIZE {len(packed.data)} /* bytes */", "")
     yield _remark(
-        "Bytes of a block in which a run begins, and `rv_reserve` finds room for so many open "
-        f"attempts, {MOST} at most: of all requirements without `let` and `for each` together, and "
-        "of each of the others. Measured where pointers have 8 bytes; where they have 4, it is "
-        "less. What is remembered of the past and of windows comes to that as the run needs it: "
-        "`rv_memory_used` says what it took."
+        "The size in bytes of a block in which a run can start and `rv_reserve` finds room for "
+        f"this number of open attempts ({MOST} at most): for all requirements without `let` and "
+        "`for each` together, and for each of the others. Measured with pointers of 8 bytes; with "
+        "4 bytes, less is needed. Memory for past operators and windows comes on top as the run "
+        "needs it: `rv_memory_used` returns the total."
     )
     yield f"#define {upper}_MEMORY(attempts) \\"
     room = f"((attempts) < {FEWEST} ? {FEWEST} : (attempts))"
@@ -156,9 +156,7 @@ def _header(spec: CheckedSpec, packed: Packed, prefix: str) -> Iterator[str]:
     signals, events = list(packed.signals), list(packed.events)
     signal_types = [spec.signals[name].type for name in signals]
     yield from _enum(f"{upper}_SIGNAL", signals, list(map(_words, signal_types)))
-    yield from _enum(
-        f"{upper}_EVENT", events, start=len(signals), of="as names: behind the signals"
-    )
+    yield from _enum(f"{upper}_EVENT", events, start=len(signals), of="in names: after the signals")
     yield from _fields(spec, packed, f"{upper}_FIELD")
     if packed.labels:
         yield from _enum(f"{upper}_LABEL", list(packed.labels))
@@ -200,7 +198,7 @@ def _fields(spec: CheckedSpec, packed: Packed, what: str) -> Iterator[str]:
     if not packed.fields:
         return
     names = identifiers([f"{event} {field}" for event, field in packed.fields])
-    yield "enum { /* each within those of its event */"
+    yield "enum { /* numbered within each event */"
     for (event, field), made in zip(packed.fields, names, strict=True):
         fields = spec.events[event].fields
         words = _words(fields[field])
@@ -215,7 +213,7 @@ def _tables(packed: Packed) -> dict[str, tuple[str, list[str], str]]:
     kinds = ["RV_REAL" if kind is Kind.REAL else "RV_WHOLE" for kind in packed.signals.values()]
     return {
         "names": (text, [*map(string, (*packed.signals, *packed.events))], "signals, then events"),
-        "kinds": ("const uint8_t", kinds, "of signals: which number each takes"),
+        "kinds": ("const uint8_t", kinds, "of signals: the type of their numbers"),
         "labels": (text, [*map(string, packed.labels)], "by number"),
         "requirements": (text, [*map(string, packed.ids)], "by number"),
     }

@@ -84,7 +84,7 @@ class DurableMonitor:
     def _found(self) -> list[bytes] | None:
         if self._path.exists() and not (self._path.is_file() or self._path.is_dir()):
             # Reading a pipe or device might never end.
-            raise SnapshotError(f"{self._path} is no regular file: name one")
+            raise SnapshotError(f"{self._path} is not a regular file: name one")
         try:
             return entries(self._path, all_of_them=True)
         except ValueError as error:  # later samples cannot be judged without the damaged one
@@ -114,7 +114,7 @@ class DurableMonitor:
         try:
             t, values = json.loads(line)
         except (ValueError, TypeError, RecursionError):
-            raise SnapshotError(f"{self._path}: its content is no sample") from None
+            raise SnapshotError(f"{self._path}: its content is not a sample") from None
         with suppress(TraceError):  # the sample was refused in the first run, too
             self._judge(t, values)
 
@@ -193,5 +193,5 @@ def _plain(value: object) -> object:
     """A NumPy scalar as a plain Python value."""
     item = getattr(value, "item", None)
     if item is None:
-        raise TypeError(f"`{type(value).__name__}` is no value of a signal or an event")
+        raise TypeError(f"`{type(value).__name__}` is not a value of a signal or an event")
     return item()

@@ -76,7 +76,7 @@ def run_lines(network: Network, run: Run) -> Iterator[str]:
     yield f"{time_text(network, 0):>9}  start in {location_text(network, run.start)}"
     for number, step in enumerate(run.steps):
         if number == run.loop:
-            yield f"{'':>9}  from here without end:"
+            yield f"{'':>9}  from here on, forever:"
         now += step.delay
         if step.action is None and step.window.high == 0 and number + 1 < len(run.steps):
             continue  # this instant only serves the query, and shows no change
@@ -95,7 +95,7 @@ _ENDINGS = {
     Ending.TIME_LOCK: "time stops here: no edge can be taken, and time may not pass",
     Ending.IDLE: "it may stay here forever",
     Ending.LOOP: "and round again",
-    Ending.ZENO_LOOP: "and round again, though time does not pass on (a Zeno loop)",
+    Ending.ZENO_LOOP: "and again, although time does not advance (a Zeno loop)",
 }
 
 

@@ -227,7 +227,8 @@ def compiled_requirements(checked: CheckedSpec) -> Mapping[str, CompiledRequirem
             span = requirement.span
             place = "" if span is None else f"{span.source.name}:{span.line}: "
             raise RvmonError(
-                f"{place}{name} cannot be monitored: {error}. Move what lies ahead behind `then`"
+                f"{place}{name} cannot be monitored: {error}. Move the future operators after "
+                "`then`"
             ) from None
         given = (rank, checked, requirement, obligation, factory, shapes)
         compiled[name] = CompiledRequirement(*given, measured=partial(lowered, measured=True))

@@ -171,7 +171,7 @@ def _obligation(judged: Judged, attempt: Undecided, now: int, end: int | None) -
     origin, when, so_far = attempt.origin, "", " so far"
     if end is not None:
         when, so_far = f" when the recording ended at {format_instant(end, origin)}", ""
-    clauses = [f"still required{when}: {required or 'what lies ahead'}"]
+    clauses = [f"still required{when}: {required or 'the rest of the consequent'}"]
     clauses += [] if end is None or not attempt.sure else [_longer(attempt, end)]
     clauses += [] if attempt.doubt is None else [str(attempt.doubt)]
     clauses += [outage_in_words(outage, origin) + so_far for outage in attempt.unborn]

@@ -23,7 +23,7 @@ def refuse_settle(settle: str) -> None:
         UnknownNameError: `settle` is neither `now` nor `next`.
     """
     if settle not in ("now", "next"):
-        raise UnknownNameError(f"no way to settle `{settle}`: there are now, next")
+        raise UnknownNameError(f"settle={settle!r}: expected 'now' or 'next'")
 
 
 class Feed:

@@ -61,7 +61,7 @@ class Intake:
         """
         if t < self.floor:
             raise TimeOrderError(
-                f"sample at {format_ticks(t)}, but time has come to "
+                f"sample at {format_ticks(t)}, but the monitor has already reached "
                 f"{format_ticks(self.floor)}: sort the samples, or allow a `max delay`"
             )
         self.newest = t if self.newest is None else max(self.newest, t)
@@ -241,7 +241,8 @@ class Validator:
         if isinstance(value, tuple | list):
             if len(value) > 1 and name in self._single:
                 why = (
-                    "only `for each` can distinguish them, and not all that reads its fields has it"
+                    "only `for each` can distinguish them, and not everything that reads its "
+                    "fields uses it"
                 )
                 raise _refused(t, f"{len(value)} payloads of `{name}`: {why}")
             return tuple(self._payload(name, payload, t) for payload in value)

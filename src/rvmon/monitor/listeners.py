@@ -184,7 +184,7 @@ class OneCall:
 def overlap() -> OverlapError:
     """The error for a call during another one."""
     return OverlapError(
-        "another call of this monitor is under way, in another thread or in what a signal handler "
-        "has interrupted; this one was not taken: give each thread a monitor of its own, or hold "
-        "a lock round the calls"
+        "another call of this monitor is running, in another thread or in the code that a signal "
+        "handler interrupted; this call was rejected: give each thread its own monitor, or hold "
+        "a lock around the calls"
     )

@@ -90,7 +90,7 @@ def _listed(
     mapped: Mapping[str, str],
     what: str,
 ) -> Iterable[str]:
-    yield f"there is no {what} for what requirements read:"
+    yield f"there is no {what} for these names, which requirements read:"
     for name, column in close.items():
         meant = f": did you mean `{shorten(column)}`?" if column else ""
         wanted = f" (as `{shorten(mapped[name])}`)" if name in mapped else ""
@@ -98,7 +98,7 @@ def _listed(
     if not all(close.values()):
         shown = ", ".join(f"`{shorten(column)}`" for column in others[:_SHOWN]) or "none"
         more = f" and {len(others) - _SHOWN} more" if len(others) > _SHOWN else ""
-        yield f"  {what}s that nothing is declared for: {shown}{more}"
+        yield f"  {what}s that are not used: {shown}{more}"
     maps = [shlex.quote(f"{name}={column or what.upper()}") for name, column in close.items()]
     which, them = (f"which {what} it is", "it") if len(maps) == 1 else ("which they are", "them")
     bind = ", or `rvmon init DATA --for SPEC` in a file" if what == "topic" else ""

@@ -257,8 +257,8 @@ class Monitor(FedMonitor[Attempt]):
             RvmonError: always.
         """
         raise RvmonError(
-            "a monitor is neither pickled nor copied: monitor.snapshot() gives the run as bytes, "
-            "and spec.restore(data) makes a monitor of them, in this process or another"
+            "a monitor can be neither pickled nor copied: monitor.snapshot() returns the run as "
+            "bytes, and spec.restore(data) makes a monitor from them, in this process or another"
         )
 
     def _snapshot(self) -> bytes:

@@ -114,7 +114,7 @@ class Words:
             return self._window_over(node, moment)
         at = f"at {moment.instant(moment.t)}"
         if cause.literal is None or cause.literal not in self._origins:
-            became = "was fulfilled" if verdict else "could be fulfilled no more"
+            became = "was fulfilled" if verdict else "could no longer be fulfilled"
             return f"{self._quoted(node)} {became} {at}"
         atom = self._atom(cause.literal)
         if verdict:

@@ -89,7 +89,7 @@ def restored_state(
     if document["plan"] != _digest(planned):
         raise SnapshotError("the snapshot was made with another plan: was rvmon changed?")
     if not (run.load(_bytes(document["core"])) and run.take_arrivals(_bytes(document["arrivals"]))):
-        raise SnapshotError("the snapshot is damaged: its content is no run of its plan")
+        raise SnapshotError("the snapshot is damaged: its content is not a run of its plan")
     state: Mapping[str, Any] = document["state"]
     return state
 
@@ -112,7 +112,7 @@ def _document(data: bytes) -> Mapping[str, Any]:
     head, separator, body = bytes(data).partition(b"\n")
     kind, _, checksum = head.rpartition(b" ")
     if kind != _KIND or not separator:
-        raise SnapshotError("these bytes are no snapshot of a monitor")
+        raise SnapshotError("these bytes are not a snapshot of a monitor")
     if hashlib.sha256(body).hexdigest().encode() != checksum:
         raise SnapshotError("the snapshot is damaged: its checksum does not match its content")
     try:

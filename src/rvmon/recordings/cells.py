@@ -142,7 +142,7 @@ def cells_of_labels(
         NotPlainError: a label is no text.
     """
     if not all(isinstance(label, str) for label in labels):
-        raise NotPlainError("a label is no text")
+        raise NotPlainError("a label is not text")
     if gaps.no_update in labels:
         kept = places != list(labels).index(gaps.no_update)
         given = kept if given is None else given & kept

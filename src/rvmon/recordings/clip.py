@@ -45,12 +45,12 @@ def refuse_place(path: str, out: str | None) -> None:
         raise RvmonError(f"{path} is several files: clip each of them, by --from and --to")
     if form not in CLIPPED:
         listed = ", ".join(CLIPPED.values())
-        raise RvmonError(f"{path}: no piece can be cut out of this format, as out of {listed}")
+        raise RvmonError(f"{path}: this format cannot be clipped; these can: {listed}")
     if out is None:
         return
     if form == "ros2" and local_path(path).is_dir():
         if os.path.lexists(out):
-            raise RvmonError(f"cannot write {out}: it is there, and a bag is a new folder")
+            raise RvmonError(f"cannot write {out}: it exists already, and a bag needs a new folder")
         return
     ending = endings_of(out)[0]
     if FORMATS.get(ending) != form:

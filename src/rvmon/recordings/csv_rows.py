@@ -96,7 +96,7 @@ def read_layout(header: list[str], schema: Schema) -> Layout:
             more = ": are these values? Put a line with the names of columns above them"
             if any(map(str.isalpha, "".join(header))):
                 more = ""
-            raise TraceError(f"column `{shorten(name)}` stands twice in the header{more}")
+            raise TraceError(f"column `{shorten(name)}` appears twice in the header{more}")
         seen[name] = index
     stamps = stamps_among(header, schema)
     return layout_of(header, stamps, schema)

@@ -137,7 +137,7 @@ def _once_each(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     found = dict(pairs)
     if len(found) != len(pairs):
         [(name, count)] = Counter(name for name, _ in pairs).most_common(1)
-        raise TraceError(f"`{shorten(name)}` stands {count} times in one object")
+        raise TraceError(f"`{shorten(name)}` appears {count} times in one object")
     return found
 
 

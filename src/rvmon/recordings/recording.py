@@ -366,7 +366,9 @@ def format_of(path: str) -> str:
         raise TraceError(cannot_read(path, FileNotFoundError(ENOENT, os.strerror(ENOENT))))
     if suffix not in FORMATS:
         known = ", ".join(FORMATS)
-        ending = f"the ending `{suffix}` is no known format" if suffix else "the name has no ending"
+        ending = (
+            f"the ending `{suffix}` is not a known format" if suffix else "the name has no ending"
+        )
         raise TraceError(f"{path}: {ending}: use one of {known}")
     if packed and FORMATS[suffix] not in ("csv", "jsonl"):
         raise TraceError(f"{path}: only text is read packed: unpack it first")

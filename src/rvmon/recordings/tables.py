@@ -69,7 +69,7 @@ def _distinct(names: Sequence[str], columns: Sequence[Any]) -> dict[str, Any]:
     found = dict(zip(names, columns, strict=True))
     if len(found) < len(names):
         [(name, _)] = Counter(names).most_common(1)
-        raise TraceError(f"column `{name}` stands twice in the table")
+        raise TraceError(f"column `{name}` appears twice in the table")
     return found
 
 

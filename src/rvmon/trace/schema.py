@@ -181,7 +181,7 @@ def gaps_of(nan: str, no_update: Any) -> Gaps:
     value = no_update.item() if hasattr(no_update, "item") else no_update
     if not isinstance(value, bool | int | float | str | None):
         raise UnknownNameError(
-            f"no_update={no_update!r} is no value of a cell: give a number, a text or a truth value"
+            f"no_update={no_update!r} is not a value of a cell: give a number, text or truth value"
         )
     if value is not None and value != value:
         return Gaps(nan=True)

@@ -159,7 +159,7 @@ def ticks_of_iso(text: str) -> int:
     match = _ISO.fullmatch(text.strip())
     if match is None:
         raise TraceError(
-            f"time `{shown}` is no date and time of ISO 8601 such as "
+            f"time `{shown}` is not a date and time of ISO 8601 such as "
             "2024-05-01T12:00:00.123456789+02:00, with at most nine digits after the point"
         )
     clock = (match["clock"] or "00:00").replace(",", ".").partition(".")[0]

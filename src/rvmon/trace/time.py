@@ -87,7 +87,7 @@ def whole_ticks(t: Any) -> int:
     """A number of ticks, also of NumPy, as a plain integer.
 
     Raises:
-        TraceError: the value is no whole number, or beyond `TIME_LIMIT`.
+        TraceError: the value is not a whole number, or beyond `TIME_LIMIT`.
 
     >>> whole_ticks(5)
     5
@@ -96,8 +96,8 @@ def whole_ticks(t: Any) -> int:
         ticks = operator.index(t)
     except TypeError:
         raise TraceError(
-            f"time {reprlib.repr(t)} is no whole number of nanoseconds: the methods without `_ns` "
-            "take seconds"
+            f"time {reprlib.repr(t)} is not a whole number of nanoseconds: the methods without "
+            "`_ns` take seconds"
         ) from None
     if not -TIME_LIMIT < ticks < TIME_LIMIT:
         raise TraceError(f"time {_shown(ticks)} ns is out of range: at most 2**62 ns (146 years)")
@@ -120,7 +120,9 @@ def _plain(seconds: Any) -> float | Fraction:
             return plain if isinstance(plain, float | int) else Fraction(plain)
     except (TypeError, ValueError, OverflowError):
         pass
-    raise TraceError(f"time {reprlib.repr(seconds)} is no finite number: give seconds as a number")
+    raise TraceError(
+        f"time {reprlib.repr(seconds)} is not a finite number: give seconds as a number"
+    )
 
 
 def ticks_of_text(text: str, unit: str = "s") -> int:

@@ -155,7 +155,7 @@ def _checked(values: Iterable[Any]) -> VerdictRow:
         Verdict(verdict)
     texts = (recording, requirement or "", attempt or "", reason, error)
     if not all(isinstance(text, str) for text in texts):
-        raise ValueError("a name or a reason is no text")
+        raise ValueError("a name or a reason is not text")
     return VerdictRow(
         recording, requirement or None, attempt or None, verdict=verdict, reason=reason, error=error
     )

@@ -198,7 +198,7 @@ def test_a_bag_is_not_replaced(base, says):
     write_ros2(base / "bag", [("/speed", START, {"data": 2.0})], "sqlite3")
     (base / "b").mkdir()
     words = ["clip", "base.rv", "bag", "R2", "-o", "b", "--allow-missing"]
-    assert "cannot write b: it is there, and a bag is a new folder" in says(2, *words).err
+    assert "cannot write b: it exists already, and a bag needs a new folder" in says(2, *words).err
 
 
 @pytest.mark.slow

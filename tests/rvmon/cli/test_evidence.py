@@ -184,7 +184,7 @@ def longer(name):
     return lambda entries: {name: entries[name] + b" "}
 
 
-NONE = "no evidence that this rvmon"
+NONE = "not an evidence archive that this rvmon"
 CHANGED = {
     "verdicts": (forged, 1, "R1#1 in a.csv: verdict was P, is F"),
     "requirements": (loosened, 1, "R2#1 in a.csv: verdict was P, is F"),

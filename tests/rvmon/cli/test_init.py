@@ -96,7 +96,7 @@ def _random_column(rng, length):
         ("a.jsonl", '{"t":0,\n', "line 1: not a JSON object"),
         ("a.jsonl", "[1]\n", "line 1: expected an object"),
         ("a.jsonl", '{"x":0}\n', "expected one time column"),
-        ("a.txt", "x", "no known format"),
+        ("a.txt", "x", "not a known format"),
         ("a.csv", "t,x\n\udcff\udcfe\x00", "a.csv"),
     ],
 )

@@ -81,7 +81,7 @@ def test_a_joint_whose_name_is_no_word_is_said_to_be_left_out(tmp_path, says):
     sent = [("/joints", START, {"name": ["a", "wrist.1"], "position": [0.5, 0.25]})]
     text = written(tmp_path, write_ros1(tmp_path / "a.bag", sent, TYPES), says)
     assert "joints.position[wrist.1], " in text
-    assert ": its name is no word: bind it" in text
+    assert ": its name is not a word: bind it" in text
 
 
 @pytest.mark.parametrize("plugin", ["sqlite3", "mcap"])

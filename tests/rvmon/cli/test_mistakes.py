@@ -43,7 +43,7 @@ FILES = {
 ESCAPE = "a\x1b[31m\x9b8m\u202e"
 ESCAPED = r"a\x1b[31m\x9b8m\u202e"
 SECONDS = "expected seconds, or a number with its unit"
-NO_PIECE = "no piece can be cut out of this format, as out of CSV"
+NO_PIECE = "this format cannot be clipped; these can: CSV"
 
 
 @pytest.fixture
@@ -130,7 +130,7 @@ MISTAKES = {
         ("labelled.rv D0 D1 D2", "two different ones"),
         ("RV999", "no diagnostic `RV999`"),
         ("door.rv D1 --runs 0", "--runs"),
-        ("no_requirement.rv", "there is nothing to explain"),
+        ("no_requirement.rv", "no requirement to explain"),
         ("old.rv", "old.rv: not UTF-8 text (invalid start byte at byte 13)"),
         (ESCAPE, ESCAPED),
     ],
@@ -144,7 +144,7 @@ MISTAKES = {
         ("wrong.rv --to c -o made", "RV012"),
         ("late.rv --to c -o made", "leave out `max delay` and give it samples in order"),
         *((f"no_requirement.rv --to {form}", "no requirement") for form in ("dot", "hoa", "json")),
-        ("door.rv --to uppaal", "is no model"),
+        ("door.rv --to uppaal", "is not a model"),
         ("lamp.ta --to c", "--to c is for specifications"),
         ("lamp.ta --to dot --const X=a", "expected NAME=NUMBER"),
         ("lamp.ta --to dot --const X=1", "no constant `X`"),
@@ -244,12 +244,12 @@ MISTAKES = {
         ("gone.rv text.jsonl", "gone.rv"),
         ("no_requirement.rv text.jsonl", "s has no requirement: there is nothing to check"),
         ("door.rv gone.jsonl", "gone.jsonl: No such file or directory"),
-        ("door.rv empty.jsonl", "there is no line"),
+        ("door.rv empty.jsonl", "it has no lines"),
         ("door.rv .", "directory"),
         ("door.rv P.csv", "by `rvmon run door.rv P.csv`"),
         ("door.rv a.mcap --state kept", "by `rvmon run door.rv a.mcap`"),
         ("door.rv bag", "by `rvmon run door.rv bag`"),
-        ("door.rv text.jsonl --state pipe", "is no regular file"),
+        ("door.rv text.jsonl --state pipe", "is not a regular file"),
         ("door.rv text.jsonl --state door.rv", "door.rv: it is an input: name another"),
         ("door.rv text.jsonl --only D2", "D2"),
         ("door.rv text.jsonl --map clsed=x", "did you mean `closed`?"),

@@ -148,7 +148,7 @@ def test_a_broken_recording_keeps_what_was_judged(files, says):
     cut, lacks, whole = json.loads(shown.out)
     assert (cut["trace"], "verdicts" in cut, "line 6" in cut["error"]) == ("cut.csv", False, True)
     assert [attempt["verdict"] for attempt in cut["judged_before"]["D1"]] == ["F"]
-    assert "there is no column for what requirements read" in shown.err
+    assert "there is no column for these names, which requirements read" in shown.err
     assert lacks["judged_before"] == {}
     assert whole["requirements"]["D1"]["verdict"] == "P"
 

@@ -58,7 +58,7 @@ def test_what_a_program_greets_with_does_not_choose_the_clock(door, says, before
     ("words", "why", "end"),
     [
         ("--time stamp:ms", "there is no time `stamp`", "0 samples, 2 lost"),
-        ("--robot id", "there is no name of a robot in `id`", "no input yet"),
+        ("--robot id", "there is no robot name in `id`", "no input yet"),
     ],
 )
 def test_a_time_or_a_robot_that_is_named_is_in_each_line(says, words, why, end):

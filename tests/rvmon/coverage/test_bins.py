@@ -138,5 +138,5 @@ def test_combinations_have_names_of_their_own():
 def test_an_unknown_way_to_settle_is_refused(goals):
     """Also where nothing is to be covered."""
     model = loads(f"{SIGNALS}{goals}\n").coverage_model
-    with pytest.raises(UnknownNameError, match="no way to settle `later`: there are now, next"):
+    with pytest.raises(UnknownNameError, match="settle='later': expected 'now' or 'next'"):
         model.monitor(settle="later")

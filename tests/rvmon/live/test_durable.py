@@ -83,7 +83,7 @@ def test_files_and_values_that_are_none_are_told(tmp_path):
     with pytest.raises(SnapshotError, match="run: the snapshot was made with another"):
         DurableMonitor(other, tmp_path / "run", print)
     add(tmp_path / "run", b"[1, 2, 3]")
-    with pytest.raises(SnapshotError, match="run: its content is no sample"):
+    with pytest.raises(SnapshotError, match="run: its content is not a sample"):
         DurableMonitor(SPEC, tmp_path / "run", print)
     monitor = DurableMonitor(SPEC, tmp_path / "new", print)
     with pytest.raises(TraceError, match="cannot be kept"):
@@ -189,7 +189,7 @@ def test_a_watch_that_goes_on_with_a_pipe_has_lost_what_came_meanwhile(watched, 
         writing.start()
         told = watched(code, "", str(pipe)).err
         writing.join()
-        assert ("what came since its last line is lost" in told) is is_told
+        assert ("lines that arrived after its last one are lost" in told) is is_told
         assert ("dropped once, first at 1 s" in told) is is_told
 
 
@@ -215,7 +215,7 @@ def test_a_kept_run_goes_on_with_the_same_requirements(tmp_path, says):
 
 def test_what_fails_by_the_last_line_is_no_success(watched):
     """Its verdict waits for a line with a later stamp, as another may have the same."""
-    assert "there is no line" in watched(2, "\n").err
+    assert "it has no lines" in watched(2, "\n").err
     text = '{"t": 0, "x": 1}\n{"t": 1, "x": 9}\n'
     told = watched(1, text)
     assert (told.out, "R: fails at the last line" in told.err) == ("", True)

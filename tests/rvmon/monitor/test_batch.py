@@ -99,7 +99,7 @@ def test_truth_values_of_record_batches_are_read():
 def test_two_columns_of_a_name_are_refused(name):
     names = ["t", "x", name]
     table = pyarrow.table([[0.0, 1.0], [2.0, 3.0], [4.0, 5.0]], names)
-    with pytest.raises(rvmon.TraceError, match=f"column `{name}` stands twice in the table"):
+    with pytest.raises(rvmon.TraceError, match=f"column `{name}` appears twice in the table"):
         rvmon.loads(BOUND).evaluate(table)
 
 

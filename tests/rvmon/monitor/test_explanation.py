@@ -74,7 +74,7 @@ FAILED = {
     ),
     "a fall of the future": (
         *("whenever start then fall(always[1 s, 3 s] near)", "0 near; 1", None),
-        "`fall(always[1 s, 3 s] near)` could be fulfilled no more at 0 s",
+        "`fall(always[1 s, 3 s] near)` could no longer be fulfilled at 0 s",
         *("fall(always[1 s, 3 s] near)", (0, 0)),
     ),
 }

@@ -152,7 +152,7 @@ def test_memory_does_not_grow_with_the_run(time, requirement):
 
 
 def test_a_way_to_settle_that_there_is_not_is_refused():
-    with pytest.raises(UnknownNameError, match="now, next"):
+    with pytest.raises(UnknownNameError, match="expected 'now' or 'next'"):
         online("always p", settle="soon")
 
 

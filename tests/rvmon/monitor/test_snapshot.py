@@ -60,7 +60,7 @@ def test_another_specification_is_refused():
         rvmon.loads(TEXT.replace("2 s", "3 s")).restore(data)
     assert rvmon.loads(f"# the front door\n{TEXT}\n").restore(data).snapshot() == data
     for wrong in (b"", b"PK\x03\x04", data[:-1], data + b" ", data.replace(b"settle", b"sattle")):
-        with pytest.raises(SnapshotError, match=r"no snapshot|damaged"):
+        with pytest.raises(SnapshotError, match=r"not a snapshot|damaged"):
             rvmon.loads(TEXT).restore(wrong)
     monitor.finish()
     with pytest.raises(SnapshotError, match="finished"):
@@ -68,7 +68,7 @@ def test_another_specification_is_refused():
 
 
 def test_forged_bytes_are_refused():
-    """So is, as the instant at which a step was torn, what is no whole number of ticks."""
+    """So is, as the instant at which a step was torn, what is not a whole number of ticks."""
     spec = rvmon.loads(TEXT)
     document, sealed = opened(spec, SAMPLES[:5])
     instants = (float("inf"), float("nan"), 1.5, "x", 2**62)

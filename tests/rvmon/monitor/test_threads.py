@@ -86,7 +86,7 @@ def test_a_call_within_another_is_refused() -> None:
                 lambda: monitor.snapshot(),
                 monitor.reset,
             ):
-                with pytest.raises(OverlapError, match="lock round the calls"):
+                with pytest.raises(OverlapError, match="lock around the calls"):
                     call()
                 refused.append(call)
             return super().items()

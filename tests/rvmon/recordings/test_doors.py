@@ -180,7 +180,7 @@ def test_a_value_may_stand_for_no_update(tmp_path):
     assert [len(one.values) for one in rows] == [3, 1, 0]  # the last has no end of a line
     assert judged(base(), MERGED, no_update=NAN).verdicts["R1"] == "P"
     for wrong in ({"nan": "gap"}, {"no_update": [1]}):
-        with pytest.raises(UnknownNameError, match=r"no reading of NaN|is no value of a cell"):
+        with pytest.raises(UnknownNameError, match=r"no reading of NaN|is not a value of a cell"):
             judged(base(), MERGED, **wrong)
 
 
@@ -244,7 +244,7 @@ def test_frames_of_pandas():
     assert 'nan="no update"' in told_by["speed"]
     assert told(base(), frame, nan="no update") == told(base(), frame.convert_dtypes())
     assert told(base(), frame.set_index("t")) == told(base(), frame)
-    with pytest.raises(TraceError, match="column `t` stands twice"):
+    with pytest.raises(TraceError, match="column `t` appears twice"):
         judged(base(), pandas.concat([left, left], axis=1))
 
 

@@ -36,7 +36,7 @@ PLAIN = '{"t": %d, "s": 1, "a": {"b": 2}, "go": {"n": 3}, "u": [{"v": "w:x"}]}\n
 def test_it_is_an_error_with_its_line(tmp_path, lines, line, name):
     path = tmp_path / "a.jsonl"
     path.write_text("".join(PLAIN % t for t in range(lines)) + line + "\n")
-    told = rf"(`{name}` stands 2 times in one object|two fields of the line stand for `{name}`)"
+    told = rf"(`{name}` appears 2 times in one object|two fields of the line stand for `{name}`)"
     with pytest.raises(TraceError, match=f"line {lines + 1}: {told}"):
         SPEC.evaluate(path)
 

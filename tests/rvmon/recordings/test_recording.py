@@ -88,8 +88,8 @@ BAD = {
     "header only": ("a.csv", "t,n\n", "holds no sample"),
     "no time column": ("a.csv", "n,ok\n1,1\n", "expected one time column"),
     "both time columns": ("a.csv", "t,t_ns\n1,1\n", "found both"),
-    "double column": ("a.csv", "t,n,n\n1,1,1\n", "`n` stands twice"),
-    "no header": ("a.csv", "0,1,1\n1,1,1\n", "`1` stands twice in the header: are these values?"),
+    "double column": ("a.csv", "t,n,n\n1,1,1\n", "`n` appears twice"),
+    "no header": ("a.csv", "0,1,1\n1,1,1\n", "`1` appears twice in the header: are these values?"),
     "short row": ("a.csv", "t,n,ok\n1,1\n", "line 2: 2 cells where the header has 3"),
     "underscored number": ("a.csv", "t,n\n0,1_0\n", "`1_0` is not a whole number"),
     "underscored time": ("a.csv", "t,n\n1_0,1\n", "line 2: time `1_0` is not a number"),
@@ -134,7 +134,7 @@ BAD = {
     "JSON bad event": ("a.jsonl", '{"t": 1, "go": "yes"}\n', "event `go`: expected true"),
     "JSON events no list": ("a.jsonl", '{"t": 1, "events": "go"}\n', 'such as ["go"]'),
     "no ending": ("a", "t\n", "the name has no ending"),
-    "unknown ending": ("a.xyz", "t\n", "the ending `.xyz` is no known format"),
+    "unknown ending": ("a.xyz", "t\n", "the ending `.xyz` is not a known format"),
 }
 
 

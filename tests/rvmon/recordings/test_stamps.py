@@ -56,7 +56,7 @@ def test_every_door_reads_every_unit_exactly(spec, tmp_path, stamps, unit, end):
         ("x", "ms", "not a number of milliseconds"),
         ("2024-13-01", "iso", "does not exist"),
         ("2024-05-01T12:00:00.1234567891", "iso", "at most nine digits"),
-        ("12", "iso", "no date and time of ISO 8601"),
+        ("12", "iso", "not a date and time of ISO 8601"),
         ("9999-01-01", "iso", "out of range"),
         ("9" * 20, "ms", "out of range"),
         # The unit that was meant is told.

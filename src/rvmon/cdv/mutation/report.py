@@ -318,9 +318,9 @@ def print_mutants(
 
 
 ABOUT = (
-    "A mutant is one small wrong change. It is killed if a test that goes well without it goes "
-    "wrong with it; a survivor asks what is missing. A hash of its name puts a mutant into a third "
-    "of all. "
+    "A mutant is one small fault planted in the code or in a requirement. A test kills it if the "
+    "test succeeds without the mutant and fails with it; a survivor shows that something is "
+    "missing. A hash of its name assigns each mutant to one of three parts. "
 )
 
 

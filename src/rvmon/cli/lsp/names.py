@@ -74,7 +74,7 @@ _LINES = {
     ("start", "end"): "`start` is the first instant. `end` can only be a trigger by itself",
     ("within", "for"): "`within D φ`, `for D φ`: `F[0, D]`, `G[0, D]`: φ at some instant, at all "
     "of the next D",
-    ("immediately",): "`immediately φ`: φ itself, said on purpose",
+    ("immediately",): "`immediately φ`: φ itself, to state that one instant is meant",
     ("inf",): "`[1 s, inf)` (or `∞`)",
     ("AG", "AF", "AX", "EG", "EF", "EX"): "Properties are CTL: `AG AF AX EG EF EX A[φ U ψ] "
     "E[φ U ψ]`",

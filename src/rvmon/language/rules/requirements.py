@@ -194,7 +194,7 @@ no_path_formula = Breach(
     "`{}` is not a path formula",
     "`A[ ]` and `E[ ]` contain `φ U ψ`; for the others write `A[] φ`, `AF φ`, `E<> φ`",
 )
-path_in_number = Breach(PATH_OUTSIDE, "a path quantifier stands inside `{}`")
+path_in_number = Breach(PATH_OUTSIDE, "there is a path quantifier inside `{}`")
 foreign_name = Breach(
     FOREIGN_NAME,
     "`{1}` is not declared in this file and is taken for a clock or location of a model",
@@ -249,7 +249,7 @@ choice_of_paths = Breach(
 not_on_one_path = Breach(
     NOT_LINEAR,
     "`{}` means something else on all paths together than on each single one",
-    "let what comes be about one instant; or check it with `rvmon verify`",
+    "let each operand refer to one instant only; or check it with `rvmon verify`",
 )
 no_response = Breach(
     NO_RESPONSE,

@@ -47,7 +47,7 @@ def two_sides(whole: Span, operator: Span, connective: Span, near: Span) -> Diag
     alone = f"({text}) {second} …" if behind else f"… {second} ({text})"
     return finding(
         REACH,
-        f"`{first}` beside `{second}` can be read in two ways here",
+        f"`{first}` next to `{second}` can be read in two ways here",
         whole,
         connective,
         fix=f"write `… {other}` or `{alone}`" if behind else f"write `{other} …` or `{alone}`",

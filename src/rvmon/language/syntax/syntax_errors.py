@@ -32,7 +32,7 @@ _FIX = {
     "”": 'write straight quotes: "',
     "'": 'texts are written in double quotes: "',
     "`": "a quoted name ends on the line it starts on, with a second backtick",
-    "%": "`%` is a unit and stands after a number",
+    "%": "`%` is a unit and comes after a number",
     ";": "items and clauses need no `;`",
     "/": COMMENT,
     "becomes": "write `rise(…)` for the instant at which something becomes true",
@@ -46,7 +46,7 @@ _CLAUSE = re.compile(
     r"(source|rationale|severity|tags|scope|at\s+end|for\s+each|in\s+at|property)"
     r'(?:\s+\w+(?:\s+in(?:\s+\S+)?)?|\s+"[^"]*")?'
 )
-_LET = "`let` stands after the trigger or the consequent: `upon … let x = … then …`"
+_LET = "`let` comes after the trigger or the consequent: `upon … let x = … then …`"
 _SHARE = "write `in at least 95 % of runs`, or `in at most 5 % of runs`"
 _BEGINNINGS = r"(?<![\w.])(?:upon|whenever|then|always|and|or)(?![\w.])|->"
 """Words after which a formula starts."""
@@ -84,7 +84,7 @@ _CERTAIN: _Rows = (
     (r"(?<![\w.])(\d+)\0[.,]\0(\d+)", "", "write `{0}.{1}`"),
     (r"(?<![\w.])\0[.,]\0(\d+)", "", "write `0.{0}`"),
     (r"(?<![\w.])(\d+)\0\.\0", "", "write `{0}.0`"),
-    (_DURATION_OF + r"\0[-+*/]\0", "", "a computed duration stands in brackets"),
+    (_DURATION_OF + r"\0[-+*/]\0", "", "a computed duration needs brackets"),
     (_DURATION_OF + r"\0,\0", "", "there is no comma after a duration"),
 )
 _LIKELY: _Rows = (
@@ -108,8 +108,8 @@ _LIKELY: _Rows = (
     (r"\0in\0", "AND", _SHARE),
     (r"([^\W\d]\w*)[ \t]+\0\(\0", "", "a call has no space before its bracket: `{0}(`"),
     (r"\0([AE][\[<][^\0]*)", "LPAR", "put brackets around `{0} …`"),
-    ("", "THEN", "the consequent stands after `then`"),
-    (r"\Arequirement[^\0]*\0then\0", "", "a trigger stands before `then`: `upon … then …`"),
+    ("", "THEN", "the consequent comes after `then`"),
+    (r"\Arequirement[^\0]*\0then\0", "", "a trigger comes before `then`: `upon … then …`"),
     (r"/\0\*\0", "", COMMENT),
     (r"\Arequirement\s*\0", "NAME", 'its name comes first: `requirement R1 "text"`'),
     (r"\Asignal\b", "COLON", "a signal has a type, as in `signal x : real [m]`"),
@@ -177,13 +177,13 @@ def _row_fix(rows: _Rows, unexpected: str, accepted: set[str], before: Span) -> 
 
 def _bare_unit_fix(unexpected: str, before: str) -> str:
     is_unit = unexpected in unit_table() and re.search(r":\s*(real|int)[ \t]+$", before)
-    return f"a unit stands in brackets: `[{unexpected}]`" if is_unit else ""
+    return f"a unit is written in brackets: `[{unexpected}]`" if is_unit else ""
 
 
 def _clause_fix(unexpected: str, before: str) -> str:
     """The fix for a clause before the formula, where its first word is mostly read as a name."""
     clause = _CLAUSE.fullmatch(f"{before.rstrip()} {unexpected}")
-    return f"a clause, as `{clause[1]} …`, stands after the formula" if clause else ""
+    return f"a clause, as `{clause[1]} …`, comes after the formula" if clause else ""
 
 
 def _word_fix(unexpected: str, accepted: set[str], parser: lark.Lark, before: str) -> str:

@@ -140,7 +140,7 @@ def _ranked(name: syntax.Expression, scope: sc.Scope, resolver: Resolver) -> Ite
                 yield first
             case _:
                 fix = "name channels, their arrays or elements, and `default`"
-                raise model_error("TA004", "this is no channel", name.span, fix)
+                raise model_error("TA004", "this is not a channel", name.span, fix)
 
 
 def _warn_of_range(variable: Variable, item: syntax.Named, findings: Findings) -> None:

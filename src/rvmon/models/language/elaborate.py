@@ -315,5 +315,5 @@ def chosen_queries(
             raise model_error("TA002", f"the model has no query `{text}`", None, f"it has {own}")
         if len(parts) > 1 and all(part in by_id for part in parts):
             several = " ".join(f"--query {part}" for part in parts)
-            raise model_error("TA020", f"`{text}` is no query", None, f"write {several}")
+            raise model_error("TA020", f"`{text}` is not a query", None, f"write {several}")
     return [(network, by_id[text]) if text in by_id else asked_on(network, text) for text in asked]

@@ -221,7 +221,7 @@ def _place(
                     continue
                 clock = resolver.clock(target, inner)
                 if clock is None:
-                    raise model_error("TA004", "this is no clock", target.span, "declare it")
+                    raise model_error("TA004", "this is not a clock", target.span, "declare it")
                 rates.append(nta.Rate(clock, _number(value, inner, resolver)))
             case _:
                 more = resolver.condition(part, inner)
@@ -355,4 +355,4 @@ def _sync(written: automaton_syntax.SyncText, scope: sc.Scope, resolver: Resolve
             raise model_error("TA004", "an array of channels", written.span, "give an index")
         case _:
             fix = f"declare it: chan {written.channel.span.text}"
-            raise model_error("TA004", "this is no channel", written.span, fix)
+            raise model_error("TA004", "this is not a channel", written.span, fix)

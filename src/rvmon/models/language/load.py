@@ -28,7 +28,7 @@ def load_network(path: str | Path, *, constants: Mapping[str, int] | None = None
         raise model_error("TA022", cannot_read(path, error), None) from None
     except UnicodeDecodeError:
         fix = "save it as UTF-8 text"
-        raise model_error("TA022", f"{path} is no text", None, fix) from None
+        raise model_error("TA022", f"{path} is not text", None, fix) from None
     return loads_network(text, name=str(path), constants=constants)
 
 

@@ -67,7 +67,7 @@ def refuse_clocks(operand: ex.Expression, span: Span) -> None:
     """Refuse expressions that a discrete state alone does not determine."""
     if not is_discrete(operand):
         fix = "arithmetic is for numbers; join conditions by and, or, not, imply"
-        raise model_error("TA009", "a condition on clocks or runs is no number", span, fix)
+        raise model_error("TA009", "a condition on clocks or runs is not a number", span, fix)
 
 
 def binary(op: ex.BinaryOp, left: ex.Expression, right: ex.Expression, span: Span) -> ex.Expression:
@@ -118,7 +118,7 @@ def truth(expression: ex.Expression) -> ex.Expression:
 def whole_compare(op: ex.BinaryOp, left: Symbol, right: Symbol, span: Span) -> ex.Expression:
     """Compare arrays or records part by part."""
     if not is_alike(left, right):
-        raise model_error("TA004", "these are not of one type", span)
+        raise model_error("TA004", "these have different types", span)
     values = ((value_of(leaf, span) for leaf in leaves(side)) for side in (left, right))
     pairs = zip(*values, strict=True)
     parts = [binary(ex.BinaryOp.EQ, one, other, span) for one, other in pairs]

@@ -81,7 +81,7 @@ class Resolver:
                 values = symbols.values_of(self.type(kind, scope), kind.span)
                 self.unrolled += len(values)
                 if self.unrolled > MAX_UNROLLED:
-                    message = f"quantifiers stand for more than {MAX_UNROLLED:,} conditions"
+                    message = f"quantifiers expand to more than {MAX_UNROLLED:,} conditions"
                     raise model_error("TA019", message, span, "let them range over smaller types")
                 parts = [
                     self.expression(body, scope.inner({name: sc.ConstantSymbol(value)}))
@@ -237,7 +237,7 @@ class Resolver:
                 raise unknown("function", name, span, names)
             case _:
                 fix = "name a variable, a clock or a channel"
-                raise model_error("TA004", "this is no name", written.span, fix)
+                raise model_error("TA004", "this is not a name", written.span, fix)
 
     def clock(self, written: syntax.Expression, scope: sc.Scope) -> int | None:
         """The clock that an expression names; `None` if it names none."""
@@ -329,4 +329,4 @@ class Resolver:
 
 def _no_value(span: Span) -> ModelError:
     fix = f"name a location: {span.text}.location"
-    return model_error("TA004", "an automaton is no value", span, fix)
+    return model_error("TA004", "an automaton is not a value", span, fix)

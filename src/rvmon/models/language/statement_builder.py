@@ -174,7 +174,7 @@ class QueryBuilder(StatementBuilder):
             raise model_error("TA001", "a bound in runs", span, "write Pr[<=T](<> p)")
         if test and (sign not in (BinaryOp.GE, BinaryOp.LE) or not 0 < level < 1):
             fix = "a probability is >= or <= a number above 0 and below 1"
-            raise model_error("TA020", "this is no test", span, fix)
+            raise model_error("TA020", "this is not a test", span, fix)
         return syntax.Chance(_CTL[word], body, within, runs, sign, level, span)
 
     def mean(self, meta: Meta, items: Sequence[Any]) -> syntax.Mean:
@@ -182,7 +182,7 @@ class QueryBuilder(StatementBuilder):
         span = self._span(meta)
         if not isinstance(name, syntax.Name) or name.name != "E" or which not in ("max", "min"):
             fix = "write E[<=T; n](max: e) or (min: e)"
-            raise model_error("TA001", "this is no expected value", span, fix)
+            raise model_error("TA001", "this is not an expected value", span, fix)
         return syntax.Mean(which == "max", value, within, runs, span)
 
     def simulation(self, meta: Meta, items: Sequence[Any]) -> syntax.Simulation:

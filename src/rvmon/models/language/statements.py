@@ -50,7 +50,7 @@ def _update(
             case (ex.Invoke() as call) | ex.Fractional("=", (ex.Invoke() as call,)):
                 return [call]
             case _:
-                raise model_error("TA004", "this is no function", written.span)
+                raise model_error("TA004", "this is not a function", written.span)
     if is_price(written.target, scope):
         return []
     clock = resolver.clock(written.target, scope)
@@ -72,7 +72,7 @@ def _copy(
 ) -> list[ex.Statement]:
     """Set an array or record to another one, element by element."""
     if not symbols.is_alike(target, source):
-        raise model_error("TA004", "these are not of one type", span)
+        raise model_error("TA004", "these have different types", span)
     pairs = zip(symbols.leaves(target), symbols.leaves(source), strict=True)
     return [_set(one, symbols.value_of(other, span), span, resolver) for one, other in pairs]
 

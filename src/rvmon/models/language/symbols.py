@@ -183,15 +183,17 @@ def value_of(symbol: sc.Symbol, span: Span) -> ex.Expression:
             fix = "a clock can only be compared with a number, or be set"
             raise model_error("TA009", "a clock has no value here", span, fix)
         case sc.PlacedSymbol(ex.BaseType.INT) | ex.Lookup():
-            raise model_error("TA004", "an array is no value", span, "give an index")
+            raise model_error("TA004", "an array is not a value", span, "give an index")
         case sc.RecordSymbol(fields):
             fix = f"name a field, such as {span.text}.{fields[0][0]}"
-            raise model_error("TA004", "a record is no value", span, fix)
+            raise model_error("TA004", "a record is not a value", span, fix)
         case sc.FunctionSymbol():
-            raise model_error("TA004", "a function is no value", span, f"call it: {span.text}(…)")
+            raise model_error(
+                "TA004", "a function is not a value", span, f"call it: {span.text}(…)"
+            )
         case sc.PlacedSymbol() | sc.TypeSymbol():
             fix = "channels belong in synchronisations, types in declarations"
-            raise model_error("TA004", f"`{span.text}` is no value", span, fix)
+            raise model_error("TA004", f"`{span.text}` is not a value", span, fix)
         case _:
             assert_never(symbol)
 
@@ -213,7 +215,7 @@ def element_of(symbol: sc.Symbol, index: ex.Expression, span: Span | None) -> sc
         case sc.RecordSymbol(fields):
             return sc.RecordSymbol(tuple((name, element_of(s, index, span)) for name, s in fields))
         case sc.ConstantSymbol() | sc.TypeSymbol() | sc.FunctionSymbol():
-            raise model_error("TA004", "this is no array", span)
+            raise model_error("TA004", "this is not an array", span)
         case _:
             assert_never(symbol)
 

@@ -96,7 +96,7 @@ class SyntaxBuilder(QueryBuilder):
         number, unit = self._whole(items[0]), items[1]
         if unit not in TICKS_PER_UNIT or number == 0:
             fix = "write a whole number above 0 of " + ", ".join(TICKS_PER_UNIT)
-            raise model_error("TA001", "this is no unit of time", self._span(meta), fix)
+            raise model_error("TA001", "this is not a unit of time", self._span(meta), fix)
         return Tree("unit", [number * TICKS_PER_UNIT[unit]])
 
     def system_line(self, meta: Meta, items: Sequence[Token]) -> Tree[tuple[syntax.Name, int]]:
@@ -239,7 +239,7 @@ class SyntaxBuilder(QueryBuilder):
         span = self._span(meta)
         if not all(isinstance(share, syntax.Decimal | syntax.Number) for share in shares):
             fix = "write whole numbers as a share, such as 1:20"
-            raise model_error("TA017", "this is no rate", span, fix)
+            raise model_error("TA017", "this is not a rate", span, fix)
         # A share of decimals becomes one of integers.
         one, other = (Fraction(str(share.value)) for share in shares)
         rate = one / other if other else Fraction(0)

@@ -86,7 +86,7 @@ def reason_at(text: str, start: int, length: int, rule: str) -> Reason | None:
     if old := _OLD_CONSTANT.search(clause):
         return "a constant without a type", f"write const int {old[1]} = {old[2]}"
     if found in ("=", ":=") and rule in ("updates", "declarations"):
-        return "an assignment is no value", "write one assignment after the other"
+        return "an assignment is not a value", "write one assignment after the other"
     return None
 
 

@@ -157,7 +157,7 @@ def read_uppaal(source: Source) -> tuple[Document, list[Diagnostic]]:
     root = read_xml(source)
     if root.name != "nta":
         fix = "the outermost element of UPPAAL's models is `nta`"
-        raise model_error("TA018", f"`{root.name}` is no model", root.span(), fix)
+        raise model_error("TA018", f"`{root.name}` is not a model", root.span(), fix)
     findings, warnings = Findings(), list[Diagnostic]()
     declarations = _part(root.first("declaration"), "declarations", findings, ())
     templates = tuple(_template(element, findings) for element in root.all("template"))

@@ -75,7 +75,7 @@ def check_time(number: int, span: Span | None) -> int:
     """Refuse a number that no clock can be compared with or set to."""
     if not 0 <= number < ex.MAX_TIME:
         fix = f"keep it from 0 to {ex.MAX_TIME - 1:,}, or choose a larger unit of time"
-        raise model_error("TA007", f"{number} is no time for a clock", span, fix)
+        raise model_error("TA007", f"{number} is not a valid value for a clock", span, fix)
     return number
 
 

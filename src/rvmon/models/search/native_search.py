@@ -314,6 +314,6 @@ def surely_passes(loop: Sequence[timings.TimedStep]) -> bool | None:
 def _longest(loop: Sequence[timings.TimedStep], head: Zone, rounds: int) -> float:
     """The longest total time of some rounds from `head`, rounded up to whole units; may be inf."""
     timing = timings.timing_of([*loop] * rounds, head)
-    assert timing is not None, "a loop of symbolic states can be gone round"
+    assert timing is not None, "a loop of symbolic states can be repeated"
     longest = float(timing.relation((0, len(loop) * rounds))[0, 1])
     return longest if longest == inf else -(-longest // timing.scale)

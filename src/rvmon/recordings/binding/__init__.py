@@ -160,7 +160,7 @@ def _converted(value: Term, given: str, kind: Kind, declared: str) -> Term:
     except UnknownUnitError as error:
         raise RvmonError(f"unknown unit `{error}`") from None
     if source.dimension != target.dimension:
-        raise RvmonError(f"[{given}] cannot be converted to [{declared}], as it is declared")
+        raise RvmonError(f"[{given}] cannot be converted to [{declared}], its declared unit")
     factor = source.factor / target.factor
     if factor == 1:
         return value

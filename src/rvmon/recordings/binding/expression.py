@@ -164,7 +164,7 @@ def _term(expression: expressions.Expression) -> Term:
         case expressions.Name(text=text):
             field = field_of(text)
             if field is None:
-                raise RvmonError(f"`{text}` is no field: write `pose.position.x`, `ranges[0]`")
+                raise RvmonError(f"`{text}` is not a field: write `pose.position.x`, `ranges[0]`")
             return field
         case expressions.Operation(op=op, args=args):
             return Applied(op.entry.apply, tuple(map(_term, args)), op.value)

@@ -265,7 +265,7 @@ def _messages(path: Path, definitions: Mapping[str, str]) -> Mapping[_Key, Any]:
     files = frame_databases(path)
     if not texts and not files:
         raise TraceError(
-            "is read as a log of CAN, and nothing describes its signals: put the database (.dbc) "
+            "is read as a CAN log, but nothing describes its signals: put the database (.dbc) "
             'beside it, or name it in a binding, as `definitions = ["car.dbc"]`'
         )
     found: dict[_Key, Any] = {}

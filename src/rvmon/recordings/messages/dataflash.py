@@ -42,7 +42,7 @@ def dataflash_messages(path: Path) -> ColumnMessages:
     """Open a log.
 
     Raises:
-        TraceError: the file is no DataFlash log, or its formats are damaged.
+        TraceError: the file is not a DataFlash log, or its formats are damaged.
         RvmonError: pymavlink is not installed.
         OSError: the file cannot be opened.
     """
@@ -57,7 +57,7 @@ def dataflash_messages(path: Path) -> ColumnMessages:
 
     with open(path, "rb") as file:
         if file.read(2) != _MAGIC:
-            raise TraceError("is no DataFlash log: it does not start like one")
+            raise TraceError("is not a DataFlash log: it does not start like one")
     with _silent(), errors_as_damage("DataFlash"):
         log = Indexed(str(path))
         data = np.frombuffer(log.data_map, np.uint8)

@@ -234,11 +234,11 @@ def _expect(name: str, term: Term, declared: str, given: str, topic: Topic) -> N
     if not alike:
         otherwise = f', or write `unit = "{declared}"` in a binding if it is' if is_prose else ""
         raise TraceError(
-            f"{wanted}, and {is_so}: bind what is in [{declared}]{_such(target, topic)}{otherwise}"
+            f"{wanted}, and {is_so}: bind a field in [{declared}]{_such(target, topic)}{otherwise}"
         )
     if found.is_scaled or any(unit.factor == target.factor for unit in alike):
         return
-    says = f"and `unit` says [{given}]" if given else "in which it would be judged as it is"
+    says = f"and `unit` says [{given}]" if given else "and would be evaluated without conversion"
     fix = f'write `unit = "{alike[0].symbol or 1}"` in a binding, and it is converted'
     raise TraceError(f"{is_so}; {wanted}, {says}: {fix}")
 

@@ -92,8 +92,8 @@ def expect_kinds(
             continue
         if is_text:
             raise TraceError(
-                f"`{name}`: `{field}` of topic {topic.name} ({topic.type}) is no text, and "
-                "`number` reads one: leave it out"
+                f"`{name}`: `{field}` of topic {topic.name} ({topic.type}) is not text, and "
+                "`number` reads text: leave it out"
             )
         fix = ""
         if kind is Kind.LABEL and isinstance(term, Field):
@@ -166,7 +166,7 @@ def _calculated(operation: Callable[..., float], values: list[Any]) -> Any:
     known = [plain(value) for value in values]
     for value in known:
         if isinstance(value, str):
-            raise TraceError(f"`{shorten(value)}` is no number to calculate with")
+            raise TraceError(f"`{shorten(value)}` is not a number to calculate with")
         if value != value:
             return None
     if inf in known or -inf in known:  # sensors report infinity if nothing is in range

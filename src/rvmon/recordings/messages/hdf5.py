@@ -70,7 +70,7 @@ def array_messages(path: Path, stamps: Stamps | None) -> column_topics.ColumnMes
     elif path.suffix.lower() == ".mat" and head:
         tree, close = _matrices(path), lambda: None
     else:
-        raise TraceError("is no HDF5 file: it does not start like one")
+        raise TraceError("is not an HDF5 file: it does not start like one")
     topics = list(_topics(tree, "", stamps))
     if not topics:
         close()
@@ -117,7 +117,7 @@ def _hierarchy(path: Path) -> tuple[_Tree, Callable[[], object]]:
 
 
 def _matrices(path: Path) -> _Tree:
-    """The variables of a MATLAB file of a version before 7.3, which is no HDF5 file."""
+    """The variables of a MATLAB file of a version before 7.3, which is not an HDF5 file."""
     with needed("a file of MATLAB", "scipy"):
         from scipy.io import loadmat
     with errors_as_damage(_FORM):

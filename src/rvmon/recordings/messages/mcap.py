@@ -40,7 +40,7 @@ def mcap_messages(path: Path, definitions: Mapping[str, str]) -> Messages:
     """Open a file; `definitions` has ROS definitions (text by type) that the file may lack.
 
     Raises:
-        TraceError: the file is no MCAP file, or damaged.
+        TraceError: the file is not an MCAP file, or damaged.
         RvmonError: a package is not installed.
         OSError: the file cannot be opened.
     """
@@ -49,7 +49,7 @@ def mcap_messages(path: Path, definitions: Mapping[str, str]) -> Messages:
     if not head:
         raise TraceError("is an empty file: record it again")
     if not head.startswith(_MAGIC):
-        raise TraceError("is no MCAP file: it does not start like one")
+        raise TraceError("is not an MCAP file: it does not start like one")
     _refuse_damaged_summary(path)
     # After the magic: opcode (1 byte), length (8), length of the profile (4), the profile.
     if head[17:21] == b"\4\0\0\0" and head[21:25] == b"ros2":
@@ -243,7 +243,7 @@ def _cbor() -> Decode:
         try:
             return loads(data)
         except CBORDecodeError as error:
-            raise TraceError(f"it is no CBOR ({first_line(error)})") from None
+            raise TraceError(f"it is not CBOR ({first_line(error)})") from None
 
     return decode
 
@@ -259,7 +259,7 @@ _OBJECTS: Mapping[str, Callable[[], Decode]] = {
 def _object(decode: Decode, data: bytes) -> Mapping[str, Any]:
     found = decode(data)
     if not isinstance(found, dict):
-        raise TraceError(f"it is no object: `{shorten(str(found))}`")
+        raise TraceError(f"it is not an object: `{shorten(str(found))}`")
     return found
 
 

@@ -32,7 +32,7 @@ def open_measurement(path: Path) -> Any:
     """Open a file with the library.
 
     Raises:
-        TraceError: the file is no MDF file, or damaged.
+        TraceError: the file is not an MDF file, or damaged.
         RvmonError: asammdf is not installed.
         OSError: the file cannot be opened.
     """
@@ -40,7 +40,7 @@ def open_measurement(path: Path) -> Any:
         from asammdf import MDF
     with open(path, "rb") as file:
         if not file.read(8).startswith((b"MDF", b"UnFinMF")):
-            raise TraceError("is no MDF file: it does not start like one")
+            raise TraceError("is not an MDF file: it does not start like one")
     logging.getLogger("asammdf").setLevel(logging.CRITICAL)
     with errors_as_damage("MDF"), _quietly_freed():
         return MDF(path)

@@ -245,7 +245,7 @@ def _types(distribution: str, parts: Iterable[Callable[[], Any]]) -> tuple[Any, 
         for name, (constants, fields) in types.items():
             for part in (*name.split("/"), *(entry[0] for entry in (*constants, *fields))):
                 if not (part.isascii() and part.isidentifier()):
-                    return None, f"`{part}` is no name"
+                    return None, f"`{part}` is not a name"
         store.register(types)
     except (TypesysError, KeyError, ValueError, TypeError) as error:
         return None, first_line(error)

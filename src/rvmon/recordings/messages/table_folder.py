@@ -86,7 +86,7 @@ def _tables(folder: Path) -> Iterator[tuple[str, _Table]]:
         if endings_of(path.name)[0] == ".csv"
     }
     if not isinstance(listed, dict) or not listed:
-        raise TraceError(f"{folder}: there is no table: put .csv files beside {TOPICS}")
+        raise TraceError(f"{folder}: there is no table: put .csv files next to {TOPICS}")
     for name, entry in listed.items():
         table = {"file": entry} if isinstance(entry, str) else entry
         if not isinstance(table, dict) or not isinstance(table.get("file"), str):

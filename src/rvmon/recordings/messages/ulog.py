@@ -80,7 +80,7 @@ def ulog_messages(path: Path) -> ColumnMessages:
             names = zip(distinct(called), log.data_list, strict=True)
             read = [_topic(name, data, start) for name, data in names]
     if log.file_corruption:
-        raise TraceError("is damaged: parts of it are no messages of ULog: copy it again")
+        raise TraceError("is damaged: parts of it are not ULog messages: copy it again")
     end = max((int(one.load()[0].max(initial=0)) for one, _ in read), default=0)
     outages = [outage for _, outage in read if outage is not None]
     outages += [

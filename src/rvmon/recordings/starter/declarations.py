@@ -172,7 +172,7 @@ def message_shapes(source: MessageFile) -> Shapes:
             if re.fullmatch(r"\w+", element):
                 declared[f"{name}.{array}.{element}"] = shape
             else:
-                left_out[f"{name}.{array}[{element}]"] = "its name is no word: bind it"
+                left_out[f"{name}.{array}[{element}]"] = "its name is not a word: bind it"
     seen = _texts_seen(source, texts)
     found = shapes_seen(seen)
     for full, shape in found.declared.items():
@@ -203,7 +203,7 @@ def _reason(leaf: str, topic: Topic) -> str:
     if "[" in leaf:
         return _ARRAY
     if field_of(leaf) is None:
-        return "its name is no word"
+        return "its name is not a word"
     return _QUATERNION if sort is Sort.QUATERNION else ""
 
 

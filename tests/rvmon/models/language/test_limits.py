@@ -26,7 +26,7 @@ EDGE = "clock x automaton T {{ location a start a edge a -> a when {} }}"
         (
             A + "query: A[] forall (i : int[0,999]) forall (j : int[0,999]) i + j >= 0",
             "TA019",
-            "quantifiers stand for more than",
+            "quantifiers expand to more than",
         ),
         (
             "automaton T(const int[0,999] i, const int[0,999] j) { location a start a }",

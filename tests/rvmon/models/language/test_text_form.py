@@ -261,7 +261,7 @@ def test_files_that_cannot_be_read_are_findings(tmp_path):
     with pytest.raises(ModelError, match="No such file"):
         load_network(tmp_path / "missing.ta")
     (tmp_path / "binary.ta").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(ModelError, match="is no text"):
+    with pytest.raises(ModelError, match="is not text"):
         load_network(tmp_path / "binary.ta")
 
 
@@ -310,8 +310,8 @@ def test_operators_bind_as_those_of_uppaal(text, bound):
         ("chan a chan priority a < a " + A, "a second priority"),
         ("chan a, b chan priority a < b " + A, "without `default`"),
         ("chan a chan priority a < default chan priority default " + A, "a second list"),
-        ("int[0,1] a chan priority a < default " + A, "no channel"),
-        ("int[0,1] i chan a[2] chan priority a[i] < default " + A, "no channel"),
+        ("int[0,1] a chan priority a < default " + A, "not a channel"),
+        ("int[0,1] i chan a[2] chan priority a[i] < default " + A, "not a channel"),
         ("chan priority a < default " + A, "no name `a`"),
     ],
 )

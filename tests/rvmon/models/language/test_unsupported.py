@@ -30,7 +30,7 @@ def model(declaration="", local="", invariant="", system="system T;", queries=""
         ({"declaration": "const N 5;"}, "a constant without a type: write const int N = 5"),
         ({"assignment": "if (1) { }"}, "statements"),
         ({"declaration": "void f() { break; }"}, "break"),
-        ({"declaration": "int i, j; void f() { if (i = j) { } }"}, "an assignment is no value"),
+        ({"declaration": "int i, j; void f() { if (i = j) { } }"}, "an assignment is not a value"),
         ({"declaration": "int f(int a) { return f(a); }", "guard": "f(3) == 2"}, "calls itself"),
         ({"guard": "random(2) &gt; 1"}, "`random`"),
     ],

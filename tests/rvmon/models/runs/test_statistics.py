@@ -135,11 +135,11 @@ def test_expected_values():
 @each(
     ("query", "message", "fix"),
     [
-        ("Pr[<=2](<> A.heads) >= 1.5", "this is no test", "above 0 and below 1"),
-        ("Pr[<=2](<> A.heads) > 0.5", "this is no test", ">= or <="),
+        ("Pr[<=2](<> A.heads) >= 1.5", "this is not a test", "above 0 and below 1"),
+        ("Pr[<=2](<> A.heads) > 0.5", "this is not a test", ">= or <="),
         ("Q[<=2](<> A.heads)", "a bound in runs", "Pr[<=T](<> p)"),
         ("E[<=2; 9](max: x)", "a clock has no value here", ""),
-        ("E[<=2; 9](sum: n)", "no expected value", "E[<=T; n](max: e)"),
+        ("E[<=2; 9](sum: n)", "not an expected value", "E[<=T; n](max: e)"),
         ("E[<=2; 1](max: n)", "1 runs", "from 2 to"),
         ("E<> (Pr[<=2](<> A.heads))", "this form of a statistical query", "Pr[<=T](<> p)"),
         ("Pr[<=2](<> deadlock)", "a lack of moves", "E<> deadlock"),

@@ -46,7 +46,7 @@ def told(tmp_path, text, spec=SPEC):
             "speed",
             "twist.twist.angular.z",
             "",
-            r"declared \[m/s\], and .* is in \[rad/s\]: bind what is in",
+            r"declared \[m/s\], and .* is in \[rad/s\]: bind a field in",
         ),
         ("speed", "pose.pose.position.x", 'unit = "m/s"', r"`pose.pose.position.x` .* in \[m\]"),
         ("speed", "pose.pose.orientation.x", "", "is a plain number"),

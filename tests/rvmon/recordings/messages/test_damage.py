@@ -90,7 +90,7 @@ def test_damage_anywhere_is_told_or_harmless(tmp_path, spec, name):
 @pytest.mark.parametrize("name", ["a.bag", "a.db3", "a.mcap"])
 @pytest.mark.parametrize("data", [b"", b"t,speed\n0,1\n" * 90, None], ids=["empty", "text", "none"])
 def test_what_is_no_bag_is_told(tmp_path, spec, name, data):
-    why = "No such file" if data is None else "(cannot be read as|is an empty|is no )"
+    why = "No such file" if data is None else "(cannot be read as|is an empty|is not an? )"
     if data is not None:
         (tmp_path / name).write_bytes(data)
     with pytest.raises(rvmon.TraceError, match=f"{name}: {why}"):
@@ -139,7 +139,7 @@ def test_a_topic_that_is_missing_is_told_with_the_nearest(tmp_path, name, says):
     (tmp_path / "base.rv").write_text(SPEC.replace("speed", "sped"))
     words = ["run", str(tmp_path / "base.rv"), str(path)]
     told = says(2, *words).err
-    assert "there is no topic for what requirements read:" in told
+    assert "there is no topic for these names, which requirements read:" in told
     assert "`sped`, read by R1, R2: did you mean `/speed`?" in told
     assert main([*words, "--map", "sped=/speed"]) == 0
     assert main([*words, "--allow-missing"]) == 1

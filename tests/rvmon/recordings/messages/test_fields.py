@@ -120,7 +120,11 @@ def test_a_name_may_be_mapped(tmp_path):
 @pytest.mark.parametrize(
     ("topic", "value", "message"),
     [
-        ("/diagnostics", "number(status[left motor].level)", "is no text, and `number` reads one"),
+        (
+            "/diagnostics",
+            "number(status[left motor].level)",
+            "is not text, and `number` reads text",
+        ),
         ("/diagnostics", "number(status[left motor].lefel)", "did you mean `status"),
         ("/diagnostics", "status[left motor].values[Mode].value", "holds text"),
         ("/joints", "header[elbow].seq", "no field `header"),

@@ -122,7 +122,7 @@ def test_names_of_json_may_have_dots_themselves(tmp_path, says):
     assert spec.evaluate(path).verdicts == {"R1": "F", "R2": "P"}
     told = says(0, "look", path)
     assert "base.x" in told.out
-    assert "left out: a.red hot: its name is no word" in told.out
+    assert "left out: a.red hot: its name is not a word" in told.out
 
 
 @pytest.mark.slow
@@ -215,7 +215,7 @@ def test_a_bag_without_definitions_is_read_by_those_of_its_distribution(tmp_path
             "shop_msgs/msg/Grip grip\n",
             " names shop_msgs/msg/Grip, and does not define it",
         ),
-        ("3d_msgs/msg/Tool", "int32 id\n", " cannot be read (`3d_msgs` is no name)"),
+        ("3d_msgs/msg/Tool", "int32 id\n", " cannot be read (`3d_msgs` is not a name)"),
     ],
     ids=["lacks a part", "no name"],
 )

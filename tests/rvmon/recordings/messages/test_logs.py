@@ -86,7 +86,7 @@ def test_messages_without_a_stamp_are_lost_and_those_of_other_topics_are_not(tmp
 
 def test_units_that_a_log_says_are_compared(tmp_path):
     path, _ = written(tmp_path, "a.asc", FEW)
-    for unit, why in (("rad", "is in [m/s]"), ("km/h", "judged as it is")):
+    for unit, why in (("rad", "is in [m/s]"), ("km/h", "evaluated without conversion")):
         text = "spec s\nsignal Drive.speed : real [{0}]\nrequirement R\n always Drive.speed < 1 {0}"
         spec = rvmon.loads(text.format(unit))
         with pytest.raises(TraceError, match=r"Drive\.speed") as caught:

@@ -73,8 +73,8 @@ def test_a_row_that_only_python_can_read_is_looked_at(tmp_path, monkeypatch):
     [
         ("t,x\n0,1\n1\n2,a\0b\n", "line 3: 1 cells where the header has 2"),
         ("t,x\n0,1\n1,a\0b\n2\n", "line 3: there are zero bytes"),
-        ("t,x,x\n0,1,2\n", "`x` stands twice"),
-        ("t,x [m],x [km]\n0,1,2\n", "`x` stands twice"),
+        ("t,x,x\n0,1,2\n", "`x` appears twice"),
+        ("t,x [m],x [km]\n0,1,2\n", "`x` appears twice"),
     ],
 )
 def test_what_is_wrong_first_is_told(text, message, tmp_path):
