@@ -19,7 +19,7 @@ from pathlib import Path
 from benchmarks.program import program
 
 from handover.model import handover_network
-from rvmon.models.language.elaborate import asked_on
+from rvmon.models.language.elaborate import query_on
 from rvmon.models.language.load import load_network
 from rvmon.models.network import Network, Query
 from rvmon.models.search.budget import Budget, Statistics
@@ -76,7 +76,7 @@ def _queries(name: str, size: int) -> list[tuple[Network, Query]]:
     folder, suffix = HERE if name == "fddi" else MODELS, ".xml" if name == "csma_cd" else ".ta"
     network = load_network(folder / f"{name}{suffix}", constants={"N": size})
     if name == "csma_cd":
-        return [(network, asked_on(network, COLLISION)[1])]
+        return [(network, query_on(network, COLLISION)[1])]
     return [(network, network.queries[0])]
 
 

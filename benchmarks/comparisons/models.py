@@ -12,9 +12,9 @@ from tests.tools.timed_generate import random_model
 from tests.tools.timed_regions import Steps, TooManyRegionsError, shows
 
 from rvmon.errors import ModelError
-from rvmon.models.language.elaborate import asked_on
+from rvmon.models.language.elaborate import query_on
 from rvmon.models.language.load import loads_network
-from rvmon.models.network import Asked, LeadsToFormula, Network
+from rvmon.models.network import LeadsToFormula, Network, ValueQuery
 from rvmon.models.network.expressions import UnaryOp, UnaryOperation
 from rvmon.models.network.guards import compares_of, is_linear
 from rvmon.models.runs import Ending
@@ -91,9 +91,9 @@ def judge_logics(found: Campaign, seed: int, numbers: range) -> None:
 
 
 def _agrees(network: Network, text: str, found: Campaign) -> bool:
-    query = asked_on(network, text)[1]
+    query = query_on(network, text)[1]
     formula, outcome = query.formula, verify(network, query)
-    if isinstance(formula, LeadsToFormula | Asked) or not is_linear(formula):
+    if isinstance(formula, LeadsToFormula | ValueQuery) or not is_linear(formula):
         found.counts[f"CTL: {str(outcome.holds).lower()}"] += 1
         return outcome.holds == holds_at_start(network, query, 300)
     denied = UnaryOperation(UnaryOp.NOT, formula)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from rvmon.errors import SpecError
-from rvmon.language.checked.names_read import requirements_asked, sources_asked
+from rvmon.language.checked.names_read import requirement_ids, source_names
 from rvmon.recordings import FORMATS
 from rvmon.texts import cannot_read, text_of_file
 from rvmon.trace.time import ticks_of_seconds
@@ -129,8 +129,8 @@ class Spec:
         """
         from rvmon.monitor.monitor import build_monitor
 
-        asked = sources_asked(self.checked, sources)
-        return build_monitor(self._compiled, only=only, settle=settle, sources=asked, keep=keep)
+        chosen = source_names(self.checked, sources)
+        return build_monitor(self._compiled, only=only, settle=settle, sources=chosen, keep=keep)
 
     def restore(self, data: bytes) -> Monitor:
         """Create a monitor from a snapshot; it continues exactly as the original would have.
@@ -182,9 +182,9 @@ class Spec:
         """
         from rvmon.monitor.evaluate import evaluate_trace
 
-        given, asked = self._reading(**reading), requirements_asked(self.checked, only)
+        given, chosen = self._reading(**reading), requirement_ids(self.checked, only)
         end = None if until is None else ticks_of_seconds(until)
-        return evaluate_trace(self._compiled, trace, given, only=asked, until=end)
+        return evaluate_trace(self._compiled, trace, given, only=chosen, until=end)
 
     def judge(
         self,
@@ -208,7 +208,7 @@ class Spec:
         else:
             from rvmon.monitor.evaluate import judge_source as judge
 
-        return judge(self._compiled, source, requirements_asked(self.checked, only), decided)
+        return judge(self._compiled, source, requirement_ids(self.checked, only), decided)
 
     def _reading(
         self,
@@ -221,7 +221,7 @@ class Spec:
 
         allowed = allow_missing if isinstance(allow_missing, bool) else tuple(allow_missing)
         read_as = (self.reading(**schema) if schema else self).schema
-        return Reading(read_as, sources_asked(self.checked, sources), allowed)
+        return Reading(read_as, source_names(self.checked, sources), allowed)
 
     def evaluate_many(
         self,
@@ -256,16 +256,16 @@ class Spec:
         from rvmon.monitor.evaluate import evaluate_apart
         from rvmon.monitor.records import give_plan
 
-        given, asked = self._reading(**reading), requirements_asked(self.checked, only)
-        begin = partial(partial, evaluate_apart, self._compiled, reading=given, only=asked)
-        reports = execute(traces, begin, jobs=jobs, what="trace")
-        return (give_plan(report, self.planned(asked)) for report in reports)
+        given, chosen = self._reading(**reading), requirement_ids(self.checked, only)
+        prepare = partial(partial, evaluate_apart, self._compiled, reading=given, only=chosen)
+        reports = execute(traces, prepare, jobs=jobs, what="trace")
+        return (give_plan(report, self.planned(chosen)) for report in reports)
 
     def planned(self, only: Iterable[str] | None = None) -> PlannedCore:
         """The packed plan of some requirements, with its tables; built once and cached."""
         from rvmon.monitor.packed_plan import planned_core
 
-        return planned_core(self._compiled, requirements_asked(self.checked, only))
+        return planned_core(self._compiled, requirement_ids(self.checked, only))
 
     def robustness(
         self,
@@ -292,9 +292,9 @@ class Spec:
         """
         from rvmon.monitor.evaluate_robustness import margins_of
 
-        given, asked = self._reading(**reading), requirements_asked(self.checked, only)
+        given, chosen = self._reading(**reading), requirement_ids(self.checked, only)
         end = None if until is None else ticks_of_seconds(until)
-        return margins_of(self._compiled, trace, given, only=asked, until=end, streams=streams)
+        return margins_of(self._compiled, trace, given, only=chosen, until=end, streams=streams)
 
     def robustness_monitor(
         self,
@@ -317,7 +317,7 @@ class Spec:
         """
         from rvmon.monitor.robustness import RobustnessMonitor
 
-        only, names = requirements_asked(self.checked, only), sources_asked(self.checked, sources)
+        only, names = requirement_ids(self.checked, only), source_names(self.checked, sources)
         return RobustnessMonitor(self._compiled, only, settle, names, streams=streams)
 
     @cached_property

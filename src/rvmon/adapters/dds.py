@@ -97,7 +97,7 @@ class DdsSource:
         return self
 
     def _drive(self) -> None:
-        with self._feed.heard():
+        with self._feed.receiving():
             while not self._stops:
                 self._waiting.wait(_LONG_NS)
                 self._wake.set(False)
@@ -161,7 +161,7 @@ class DdsSource:
         self._found -= ready
         for name in ready:
             try:
-                self._begin(name, self._types[name])
+                self._subscribe(name, self._types[name])
             except Exception as error:  # noqa: BLE001 - one bad topic must not stop the others
                 self._give_up(name, str(error))
 
@@ -172,7 +172,7 @@ class DdsSource:
                 self._given_up.add(name)
                 self._feed.lose(self._wanted[name], why, for_good=True)
 
-    def _begin(self, name: str, wire_type: str) -> None:
+    def _subscribe(self, name: str, wire_type: str) -> None:
         from cyclonedds.core import Listener, Policy, Qos
         from cyclonedds.sub import DataReader
 

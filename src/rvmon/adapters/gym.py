@@ -83,9 +83,9 @@ class Judged(
         self._monitor = spec.monitor()
         self._decided: list[Attempt] = []
         self._monitor.on_decided(self._decided.append)
-        self._begin()
+        self._start_run()
 
-    def _begin(self) -> None:
+    def _start_run(self) -> None:
         self._monitor.reset()
         self._measuring = None if self._shaping is None else self._spec.robustness_monitor()
         self._t = 0
@@ -95,7 +95,7 @@ class Judged(
     ) -> tuple[_Observation, dict[str, Any]]:
         """Start an episode, and a run."""
         observation, info = self.env.reset(seed=seed, options=options)
-        self._begin()
+        self._start_run()
         judged, _ = self._judge(self._observe(observation, None, info), over=False)
         return observation, {**info, "rv": judged}
 

@@ -145,7 +145,7 @@ def decoded_object(text: bytes) -> Any:
 PROLOGUE = 10  # the most lines examined to find out whether a stream has stamps
 
 
-def begin_of(lines: Iterable[bytes], schema: Schema) -> tuple[list[bytes], int | None]:
+def first_lines(lines: Iterable[bytes], schema: Schema) -> tuple[list[bytes], int | None]:
     """Read the first lines of a stream, up to the one that shows whether its lines have stamps.
 
     Programs often print a greeting first. So lines that are unreadable, or have neither a stamp nor
@@ -221,18 +221,18 @@ def read_lines(file: int) -> Iterator[bytes]:
 
     A longer line than `LONGEST_LINE` comes in pieces.
     """
-    begun: list[bytes] = []  # pieces of an incomplete line, joined once to avoid quadratic cost
+    pieces: list[bytes] = []  # pieces of an incomplete line, joined once to avoid quadratic cost
     length, mark = 0, BOM_UTF8
     while piece := os.read(file, _PIECE):
         *whole, rest = piece.split(b"\n")
         if whole:
-            whole[0] = b"".join([*begun, whole[0]]).removeprefix(mark)
-            begun, length, mark = [], 0, b""
+            whole[0] = b"".join([*pieces, whole[0]]).removeprefix(mark)
+            pieces, length, mark = [], 0, b""
             yield from whole
-        begun.append(rest)
+        pieces.append(rest)
         length += len(rest)
         if length > LONGEST_LINE:
-            yield b"".join(begun)
-            begun, length = [], 0
-    if rest := b"".join(begun).removeprefix(mark):
+            yield b"".join(pieces)
+            pieces, length = [], 0
+    if rest := b"".join(pieces).removeprefix(mark):
         yield rest

@@ -53,7 +53,7 @@ class MessageFeed:
         self._fed: dict[str, tuple[str, ...]] = {}
         self._stamped: set[str] = set()
         self._began = driver.now_ns
-        self._heard: dict[str, int] = {}
+        self._received: dict[str, int] = {}
 
     def topics(self) -> Iterator[str]:
         """The topics that may feed a declared name: from the binding, or suggested by the name.
@@ -89,12 +89,12 @@ class MessageFeed:
             for t, values in readers.take(topic, _NOW, content):
                 t_ns = None if t == _NOW else t
                 self._driver.offer(values, robot=self._robot, t_ns=t_ns)
-                self._heard[topic.name] = self._driver.now_ns if t_ns is None else t_ns
+                self._received[topic.name] = self._driver.now_ns if t_ns is None else t_ns
         except Exception as error:  # noqa: BLE001 - middleware swallows errors or dies of them
             self.lose(topic.name, str(error))
 
     @contextmanager
-    def heard(self) -> Iterator[None]:
+    def receiving(self) -> Iterator[None]:
         """Declare everything lost if the receiving loop within `with` ends by an error."""
         try:
             yield
@@ -129,7 +129,7 @@ class MessageFeed:
             for_good: whether it lasts until `find` is called.
         """
         _log.warning("a message of %s is rejected: %s", topic, why)
-        since = self._heard.get(topic, self._began) + 1
+        since = self._received.get(topic, self._began) + 1
         self._driver.lose(
             self._names_of(topic),
             robot=self._robot,

@@ -101,7 +101,7 @@ class MqttSource:
         self._verdicts = verdicts
         self._connected = Event()
         self._dropped: int | None = None
-        self._counted_at = self._heard = objects.driver.now_ns
+        self._counted_at = self._received = objects.driver.now_ns
         self._refusal = ""
         self._client = Client(CallbackAPIVersion.VERSION2)
         self._client.on_connect = self._on_connect
@@ -146,7 +146,7 @@ class MqttSource:
             _log.warning("the broker refuses: %s", self._refusal)  # an outage then goes on
         elif self._connected.is_set():  # not the first time: the outage ends
             self._objects.driver.found()
-        self._heard = self._objects.driver.now_ns
+        self._received = self._objects.driver.now_ns
         self._connected.set()
 
     def _on_disconnect(self, _: object, __: object, ___: object, reason: Any, ____: object) -> None:
@@ -154,7 +154,7 @@ class MqttSource:
         if reason.is_failure:
             why = "the connection to the broker is lost"
             _log.warning("%s (%s): published messages are lost until it is back", why, reason)
-            self._objects.driver.lose(since_ns=self._heard, why=why)
+            self._objects.driver.lose(since_ns=self._received, why=why)
 
     def _on_message(self, _: object, __: object, message: Any) -> None:
         try:
@@ -164,7 +164,7 @@ class MqttSource:
 
     def hear(self, topic: str, payload: bytes, *, is_old: bool = False) -> None:
         """Offer a message; an old one was retained by the broker."""
-        self._heard = self._objects.driver.now_ns
+        self._received = self._objects.driver.now_ns
         if topic == _DROPPED:
             self._take_count_of_drops(payload)
             return

@@ -101,7 +101,7 @@ class Ros1Source:
         self._feed.take(known, content)
 
     def _watch_connections(self) -> None:
-        with self._feed.heard():
+        with self._feed.receiving():
             while not self._stops.wait(_TURN_S):
                 for subscriber in tuple(self._subscribers):
                     if subscriber.resolved_name != CLOCK:

@@ -80,7 +80,7 @@ class Ros2Source:
         return self
 
     def _spin(self) -> None:
-        with self._feed.heard():
+        with self._feed.receiving():
             self._executor.spin()
 
     def _find(self) -> None:
@@ -97,9 +97,9 @@ class Ros2Source:
                 several = ", ".join(sorted(self._found[name]))
                 self._feed.lose(name, f"it has several types, {several}", for_good=True)
             else:
-                self._begin(name, types[0], [publisher.qos_profile for publisher in publishers])
+                self._subscribe(name, types[0], [publisher.qos_profile for publisher in publishers])
 
-    def _begin(self, name: str, type_name: str, published: list[Any]) -> None:
+    def _subscribe(self, name: str, type_name: str, published: list[Any]) -> None:
         from rclpy.event_handler import SubscriptionEventCallbacks
         from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
         from rosidl_runtime_py.utilities import get_message

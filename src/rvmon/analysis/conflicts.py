@@ -115,7 +115,7 @@ class ConflictSearch:
         First each requirement with itself, then pairs that read a common name, then pairs
         connected by an `always` requirement that shares a name with both.
         """
-        yield from ((subject, subject) for subject in self.subjects if subject.starts_anew)
+        yield from ((subject, subject) for subject in self.subjects if subject.starts_again)
         yield from self._pairs
         for subject, other in combinations(self.subjects, 2):
             if frozenset((subject, other)) not in self._near and any(
@@ -321,7 +321,7 @@ def starts_with(together: Together, other: Subject, implied: Subject) -> bool:
         return True
     if other.trigger is implied.trigger and theirs.mode is ours.mode:
         return True
-    if not (other.starts_anew and implied.starts_anew):
+    if not (other.starts_again and implied.starts_again):
         return False
     letters = together.letters([other, implied])
     return letters is not None and all(mine or not one for (_, mine), (_, one) in letters)

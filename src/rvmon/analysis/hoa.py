@@ -147,12 +147,12 @@ class _Machine:
         )
         initial = self.automaton.initial
         is_open = self.verdicts[initial] == "?"
-        begun = self._edges(initial, first) if is_open else self.edges[initial]
-        word = self._implied(initial, begun) or self.verdicts[initial]
-        edges = _renamed(begun, blocks)
+        outgoing = self._edges(initial, first) if is_open else self.edges[initial]
+        word = self._implied(initial, outgoing) or self.verdicts[initial]
+        edges = _renamed(outgoing, blocks)
         states = {
-            block: (said, _renamed(its, blocks))
-            for block, said, its in zip(blocks, self.verdicts, self.edges, strict=True)
+            block: (verdict, _renamed(its, blocks))
+            for block, verdict, its in zip(blocks, self.verdicts, self.edges, strict=True)
         }
         states[START] = word, edges
         order = [*dict.fromkeys(edges.values())]
@@ -163,8 +163,8 @@ class _Machine:
             for block in order
             if states[block][0] == word and edges.items() <= states[block][1].items()
         )
-        begin = next(alike, START)  # an equal later state can serve as the state at the trigger
-        number = {block: n for n, block in enumerate(dict.fromkeys((begin, *order)))}
+        entry = next(alike, START)  # an equal later state can serve as the state at the trigger
+        number = {block: n for n, block in enumerate(dict.fromkeys((entry, *order)))}
         return [(states[block][0], _renamed(states[block][1], number)) for block in number]
 
 

@@ -66,7 +66,7 @@ def late_in(
     """
     responses = {}
     for attempt in attempts:
-        if attempt.number not in waits or attempt.blame is None or seen.begin is None:
+        if attempt.number not in waits or attempt.blame is None or seen.first is None:
             continue
         (truth,) = seen.truths(waits[attempt.number])
         deadline = attempt.blame.window[1] or 0

@@ -96,7 +96,7 @@ def in_words(formula: formulas.Formula, *, positive: bool = True) -> str:
         case formulas.Compare(left=left, right=NumericLiteral(value=bool())):  # a field of truth
             return f"{format_numeric(left)} is {'true' if positive else 'false'}"
         case formulas.Compare(op=op, left=left, right=right):
-            verb = (op if positive else op.denied).said
+            verb = (op if positive else op.denied).wording
             return f"{format_numeric(left)} {verb} {format_numeric(right)}"
         case formulas.ProbeAtom(probe=probe, name=name):
             return f"{name} {_PROBED[probe][0 if positive else 1]}"
@@ -123,7 +123,7 @@ def in_words(formula: formulas.Formula, *, positive: bool = True) -> str:
             return _amount(formula, positive)
         case formulas.Passed(since=since, after=after, strict=strict):
             op = formulas.CompareOp.GT if strict else formulas.CompareOp.GE
-            verb = (op if positive else op.denied).said
+            verb = (op if positive else op.denied).wording
             return f"the time since {since or 'the first instant'} {verb} {format_numeric(after)}"
         case _:
             assert_never(formula)
@@ -150,7 +150,7 @@ def _amount(formula: formulas.Amount, positive: bool) -> str:
         often = f"more than {often}" if formula.strict else f"{often} or more"
         return f"{'' if counts else 'for '}{known}{often} {back}, {what}"
     op = formulas.CompareOp.GT if formula.strict else formulas.CompareOp.GE
-    verb = (op if positive else op.denied).said
+    verb = (op if positive else op.denied).wording
     if of.value is None or isinstance(of.value, NumericLiteral):  # a count, or a sum of constants
         often = "for how long" if of.measured.of_time else "how often"
         amount = f"{often} {what} {back}"
@@ -162,7 +162,7 @@ def _amount(formula: formulas.Amount, positive: bool) -> str:
 def _by_entry(formula: formulas.Unary | formulas.Binary, positive: bool) -> str:
     """An operator formula in the wording of the operator table."""
     entry = formula.op.entry
-    text = entry.said if positive else entry.denied or f"not so: {entry.said}"
+    text = entry.wording if positive else entry.denied or f"not so: {entry.wording}"
     return text.format_map(_Parts(formula))
 
 

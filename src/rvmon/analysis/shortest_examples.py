@@ -232,8 +232,8 @@ class _Search:
 
     def _sampled(self, node: _Node, t: int) -> Iterator[_Node]:
         for activity, changes, valuation in self._further(node.held):
-            said = {name: value for name, value in valuation.items() if value is not SILENT}
-            number = self._number({**self.held[node.held], **said})
+            given = {name: value for name, value in valuation.items() if value is not SILENT}
+            number = self._number({**self.held[node.held], **given})
             yield _Node((*node.samples, Sample(t, changes)), t, number, node.activity + activity)
 
     def _sorted(self, place: int) -> list[tuple[int, dict[str, Value], Valuation]]:
@@ -266,10 +266,10 @@ class _Search:
 def _choices(spec: CheckedSpec, requirements: Sequence[CompiledRequirement]) -> Choices:
     leaves = {state.leaf: None for one in requirements for state, _ in one.leaves if state.leaf}
     names = {name for one in requirements for name in one.reads}
-    asked = [one.requirement for one in requirements]
-    names |= {one.for_each.value.event for one in asked if one.for_each}
-    captured = [capture.value for one in asked for capture in one.captures]
-    windows = [limit for one in asked for limit in _windows(one)]
+    rules = [one.requirement for one in requirements]
+    names |= {one.for_each.value.event for one in rules if one.for_each}
+    captured = [capture.value for one in rules for capture in one.captures]
+    windows = [limit for one in rules for limit in _windows(one)]
     return choices_of(spec, list(leaves), names, captured, windows)
 
 

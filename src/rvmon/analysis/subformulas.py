@@ -78,8 +78,8 @@ def dissect(
     last = end if attempt.decided is None else attempt.decided
     length = last - attempt.triggered
     margin = max(int(length * AROUND), 2) if length else small_step(spec, [requirement])
-    begin = samples[0].t
-    start, stop = max(attempt.triggered - margin, begin), min(last + margin, end)
+    first = samples[0].t
+    start, stop = max(attempt.triggered - margin, first), min(last + margin, end)
     waits = waits_of(requirement, [attempt])
     questions = [parts_of(requirement, attempt), *waits.values()]
     seen = look_through(spec, questions, samples, end, names)
@@ -159,7 +159,7 @@ class TriggerParts:
 
     def miss_in(self, seen: RecordedTruths) -> str:
         """The sentence of `why_not_triggered`, from the truths of `question` over a recording."""
-        if seen.begin is None:
+        if seen.first is None:
             return "the recording has no sample"
         if not self._is_explained:
             return ""
@@ -168,7 +168,7 @@ class TriggerParts:
         best = min(misses, key=lambda miss: len(miss.missing))
         if best.missing and best.at is None:
             return "; ".join(_apart(best.missing, truths, seen))
-        return _sentence(best, truths, seen.begin)
+        return _sentence(best, truths, seen.first)
 
 
 class Looking:
@@ -231,7 +231,7 @@ def _apart(
             word = valueless[part.formula.name]
         elif not spans:
             word = "was never known"
-        elif spans[0] != [seen.begin, seen.end]:
+        elif spans[0] != [seen.first, seen.end]:
             word = "was never known to be true"
         elif isinstance(part.formula, formulas.EventAtom):
             word = "never occurred"

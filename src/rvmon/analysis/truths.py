@@ -74,7 +74,7 @@ class RecordedTruths(Struct, frozen=True):
     """
 
     names: frozenset[str] | None  # the signals and events that had a source; `None`: all
-    begin: int | None  # the instant of the first sample, ticks; `None` if there is no sample
+    first: int | None  # the instant of the first sample, ticks; `None` if there is no sample
     end: int  # the last instant, ticks
     positions: Positions  # the positions of the recording
     valueless: frozenset[str]  # the signals that never had a value
@@ -111,15 +111,15 @@ def look_through(
     if isinstance(pieces, HeldRecording):
         outages, pieces = pieces.outages, pieces.pieces()
     source = Trace((), names, end, outages)
-    runs = [group for group in groups.values() if group.begin(source, plans)]
-    begin: int | None = None
+    runs = [group for group in groups.values() if group.start(source, plans)]
+    first: int | None = None
     instants: list[NDArray[np.int64]] = []
     valueless = set(spec.signals)
     of_instances = any(question.for_each is not None for question in questions)
     for piece in pieces:
         times = np.array([piece.t]) if isinstance(piece, Sample) else piece.times
-        if begin is None and len(times):
-            begin = int(times[0])
+        if first is None and len(times):
+            first = int(times[0])
         if spec.time is TimeModel.SAMPLED:
             instants.append(times)
         if valueless:
@@ -127,10 +127,10 @@ def look_through(
         samples = tuple(samples_of(piece)) if of_instances else ()
         for run in runs:
             run.take(piece, samples)
-    positions = None if begin is None else _positions(spec, begin, end, instants)
-    ticks = _Ticks(positions, begin or 0, end)
+    positions = None if first is None else _positions(spec, first, end, instants)
+    ticks = _Ticks(positions, first or 0, end)
     truths = {whose: group.truths(ticks) for whose, group in groups.items()}
-    return RecordedTruths(names, begin, end, positions, frozenset(valueless), truths)
+    return RecordedTruths(names, first, end, positions, frozenset(valueless), truths)
 
 
 class _Plan:
@@ -169,7 +169,7 @@ class _Group:
         """Add the formulas of a question."""
         self._formulas.update(zip(question.texts, question.formulas, strict=True))
 
-    def begin(self, source: Trace, plans: Plans | None) -> bool:
+    def start(self, source: Trace, plans: Plans | None) -> bool:
         """Start the run; returns whether there is anything to evaluate."""
         if plans is None or self._question.for_each is not None or self._question.captured:
             plans = {}
@@ -215,7 +215,7 @@ def _born(piece: Batch | Sample, valueless: Set[str]) -> set[str]:
 
 
 def _positions(
-    spec: CheckedSpec, begin: int, end: int, instants: Sequence[NDArray[np.int64]]
+    spec: CheckedSpec, first: int, end: int, instants: Sequence[NDArray[np.int64]]
 ) -> Positions:
     match spec.time:
         case TimeModel.HELD:
@@ -224,7 +224,7 @@ def _positions(
             return distinct(instants)
         case TimeModel.CLOCKED:
             period = spec.period or 1
-            return range(-(-begin // period) * period, end + 1, period)
+            return range(-(-first // period) * period, end + 1, period)
         case _:
             assert_never(spec.time)
 
@@ -232,10 +232,10 @@ def _positions(
 class _Ticks:
     """Converts ranges of positions, as the core numbers them, to sets of ticks."""
 
-    def __init__(self, positions: Positions, begin: int, end: int) -> None:
+    def __init__(self, positions: Positions, first: int, end: int) -> None:
         self._positions = positions
         self._first = 0
-        self._begin = begin
+        self._start = first
         if isinstance(positions, range):
             self._first = positions.start // positions.step
         self.end = end
@@ -246,7 +246,7 @@ class _Ticks:
             return ranges
         if self._positions is not None:
             ranges = self._lasting(ranges - self._first, self._positions)
-        return within(joined(ranges), self._begin, self.end)
+        return within(joined(ranges), self._start, self.end)
 
     def _lasting(
         self, ranges: NDArray[np.int64], positions: range | NDArray[np.int64]

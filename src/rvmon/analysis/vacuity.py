@@ -47,7 +47,7 @@ class Subject(Struct, frozen=True, eq=False):
         return not self.is_always and not isinstance(self.requirement.trigger, BoundAtom)
 
     @property
-    def starts_anew(self) -> bool:
+    def starts_again(self) -> bool:
         """Whether an attempt starts at every instant at which its trigger holds."""
         return self.requirement.pulse and self.requirement.mode is Mode.UPON
 

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from rvmon.trace.sample import Sample
     from rvmon.verdicts.attempt import Blame
 
-Asked = tuple[int, WindowValue]  # an instant in ticks, and the window to be evaluated there
+WindowRequest = tuple[int, WindowValue]  # an instant in ticks, and the window to be evaluated there
 
 
 def windows_blamed(spec: CheckedSpec, requirement: Requirement, blame: Blame) -> list[WindowValue]:
@@ -78,14 +78,14 @@ class WindowValues:
     """
 
     def __init__(
-        self, spec: CheckedSpec, asked: Sequence[Asked], origin: int, recording: Trace
+        self, spec: CheckedSpec, requests: Sequence[WindowRequest], origin: int, recording: Trace
     ) -> None:
         from rvmon.monitor.evaluate import RecordingRun  # imports NumPy
 
-        self._asked = asked
+        self._requests = requests
         requirements = {
             str(place): _captured_at(str(place), t - origin, window)
-            for place, (t, window) in enumerate(asked)
+            for place, (t, window) in enumerate(requests)
         }
         # The samples of a recording are in order, so `max delay` would only hold them back.
         captured = replace(
@@ -98,10 +98,10 @@ class WindowValues:
         """Take the next piece of the recording."""
         self._run.take(piece)
 
-    def values(self) -> Mapping[Asked, Scalar]:
+    def values(self) -> Mapping[WindowRequest, Scalar]:
         """End the recording; returns the values that are known."""
         return {
-            self._asked[int(attempt.requirement)]: value
+            self._requests[int(attempt.requirement)]: value
             for attempt in self._run.report().attempts
             if (value := attempt.captured["it"]) is not None
         }

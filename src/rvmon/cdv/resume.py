@@ -88,7 +88,7 @@ def unfinished(
             for key, entry in ordered:
                 known[key] = Played(jobs[key], entry.outcome, entry.control)
             seconds += ordered[-1][1].seconds if ordered else 0.0
-        journal.begin(path, entries[: 1 + len(ordered)])
+        journal.create(path, entries[: 1 + len(ordered)])
     except OSError as error:
         raise RvmonError(f"{path}: {error.strerror}: remove it, or name another --out") from None
     chosen = [*jobs.values()] if shard is None else shard.of([*jobs.values()])

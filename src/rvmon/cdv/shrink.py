@@ -272,7 +272,7 @@ def save_regression(campaign: Campaign, test: Test, folder: Path) -> tuple[Path,
         law=", ".join(f"{name} is {verdict}" for name, verdict in test.expected.items())
         or "It completes",
         command=_command(campaign.program, folder),
-        timeout=None if campaign.timeout_s is None else campaign.timeout_s + parallel.BEGIN_S,
+        timeout=None if campaign.timeout_s is None else campaign.timeout_s + parallel.START_S,
     )
     path = folder / f"test_{function}.py"
     write_whole(path, text)

@@ -104,7 +104,7 @@ def _reported(
     arguments: Namespace,
 ) -> MutationReport:
     jobs = arguments.jobs or os.cpu_count() or 1
-    begun = time.perf_counter()
+    started = time.perf_counter()
     spec = campaign.requirements_of(robot)
     suites = {}
     for name, tests in _suites(campaign, strategies, arguments).items():
@@ -128,7 +128,7 @@ def _reported(
         mutants.equivalent,
         readers(spec.checked),
         shows_held_out=arguments.held_out,
-        seconds=time.perf_counter() - begun,
+        seconds=time.perf_counter() - started,
     )
 
 

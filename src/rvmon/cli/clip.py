@@ -133,7 +133,7 @@ def _piece(spec: Spec, arguments: argparse.Namespace, attempt: Attempt | None) -
     ordered = spec.checked.max_delay is None
     start, stop = -TIME_LIMIT, TIME_LIMIT
     if attempt is not None:
-        start = _begin(spec, attempt) - arguments.before
+        start = _start_of(spec, attempt) - arguments.before
         decided = attempt.decided
         if decided is not None:
             # In a recording only a sample advances time, so the cut needs one after the decision.
@@ -158,7 +158,7 @@ def _first_from(instant: int, pieces: Iterable[Batch | Sample]) -> int:
     return instant
 
 
-def _begin(spec: Spec, attempt: Attempt) -> int:
+def _start_of(spec: Spec, attempt: Attempt) -> int:
     """The trigger; in an episode, which may have lasted for hours, the start of what failed."""
     blame = attempt.blame
     if blame is None or spec.requirements[attempt.requirement].mode is Mode.UPON:
@@ -174,7 +174,7 @@ def _same(spec: Spec, attempt: Attempt, report: Report, piece: Piece) -> Attempt
     """
     is_episode = spec.requirements[attempt.requirement].mode is Mode.WHENEVER
     by_end = attempt.decision is not Decision.PREFIX
-    begin = max(piece.start, attempt.triggered) if is_episode else attempt.triggered
+    first = max(piece.start, attempt.triggered) if is_episode else attempt.triggered
     for one in report.attempts:
         triggered = max(piece.start, one.triggered) if is_episode else one.triggered
         if (
@@ -183,7 +183,7 @@ def _same(spec: Spec, attempt: Attempt, report: Report, piece: Piece) -> Attempt
             and one.captured == attempt.captured
             and one.decision is attempt.decision
             and (by_end or one.decided == attempt.decided)
-            and (triggered == begin or (is_episode and one.triggered <= _begin(spec, attempt)))
+            and (triggered == first or (is_episode and one.triggered <= _start_of(spec, attempt)))
         ):
             return one
     return None

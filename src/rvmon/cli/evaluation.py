@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec import Struct, field, structs
 
-from rvmon.cli.options import asked_ids, constants_of
+from rvmon.cli.options import chosen_ids, constants_of
 from rvmon.cli.output import bar, shown_while_reading, warn
 from rvmon.cli.post_analysis import Remembered, post_analysis
 from rvmon.cli.reading import allowed_names, opened, reading_spec
@@ -59,7 +59,7 @@ def spec_and_options(
     loaded = load(arguments.spec, name=name, const=constants_of(arguments.const))
     spec = reading_spec(loaded, arguments)
     return spec, Options(
-        asked_ids(arguments, spec),
+        chosen_ids(arguments, spec),
         arguments.until,
         arguments.robustness,
         allowed_names(arguments.allow_missing),
@@ -70,9 +70,9 @@ def spec_and_options(
 
 def _shows_counts_alone(arguments: argparse.Namespace) -> bool:
     """Whether the output contains only numbers of verdicts, no explanations."""
-    asked = vars(arguments)  # with `get`, as the arguments kept in evidence lack these options
-    is_kept = any(asked.get(name) for name in ("out", "report", "junit", "mcap", "evidence"))
-    return bool(asked.get("quiet") and asked.get("format") == "text" and not is_kept)
+    given = vars(arguments)  # with `get`, as the arguments kept in evidence lack these options
+    is_kept = any(given.get(name) for name in ("out", "report", "junit", "mcap", "evidence"))
+    return bool(given.get("quiet") and given.get("format") == "text" and not is_kept)
 
 
 class RecordingCoverage:
@@ -157,15 +157,15 @@ def judge_all(
     done = 0
     is_alone = len(traces) == 1
     is_apart = jobs != 1 and not is_alone
-    begin = partial(partial, judge, spec, options=options, is_alone=is_alone)
+    prepare = partial(partial, judge, spec, options=options, is_alone=is_alone)
     planned: PlannedCore | None = None
     if is_apart:
-        begin = partial(partial, _judge_apart, spec, options=options, writes_json=writes_json)
+        prepare = partial(partial, _judge_apart, spec, options=options, writes_json=writes_json)
         planned = spec.planned(options.only)  # reports come without the plan, and get it here
     try:
         with bar("recordings", len(traces)) as show:
             jobs = jobs if isinstance(jobs, str) else min(jobs, len(traces))
-            for one in execute(traces, begin, jobs=jobs, what="recording"):
+            for one in execute(traces, prepare, jobs=jobs, what="recording"):
                 done += 1
                 if not is_alone:  # a single recording shows the share that is read
                     show(done)

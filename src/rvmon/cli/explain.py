@@ -38,9 +38,9 @@ def run_explain(arguments: argparse.Namespace) -> int:
 
 
 def _ids(named: list[str], spec: Spec) -> list[str]:
-    from rvmon.language.checked.names_read import requirements_asked
+    from rvmon.language.checked.names_read import requirement_ids
 
-    requirements_asked(spec.checked, named)
+    requirement_ids(spec.checked, named)
     if len(named) > 2 or (len(named) == 2 and named[0] == named[1]):
         raise RvmonError("error: expected one requirement, or two different ones to compare")
     if not spec.requirements:

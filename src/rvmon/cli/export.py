@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import asked_ids, constants_of, model_constants_of, refuse_over
+from rvmon.cli.options import chosen_ids, constants_of, model_constants_of, refuse_over
 from rvmon.cli.output import say, warn
 from rvmon.errors import RvmonError
 from rvmon.files import write_file
@@ -32,7 +32,7 @@ def run_export(arguments: argparse.Namespace) -> int:
                 f"{arguments.subject} is not a model (.ta): UPPAAL has no specifications"
             )
         spec = load(arguments.subject, const=constants_of(arguments.const))
-        ids = asked_ids(arguments, spec)
+        ids = chosen_ids(arguments, spec)
         if not spec.requirements:
             raise RvmonError(f"{arguments.subject} has no requirement: there is nothing to export")
         if arguments.to == "c":

@@ -76,7 +76,7 @@ def declare(parser: Parser, *names: str) -> None:
         parser.option(words := _WORDS[name], _ABOUT[words], **_MORE.get(name, {}))
 
 
-def asked_ids(arguments: argparse.Namespace, spec: Spec) -> tuple[str, ...] | None:
+def chosen_ids(arguments: argparse.Namespace, spec: Spec) -> tuple[str, ...] | None:
     """The requirements selected by the options `ONLY`; `None`: all."""
     from rvmon.language.checked.names_read import labelled
 
@@ -97,7 +97,7 @@ def ids_of(listed: str | None, spec: Spec) -> tuple[str, ...] | None:
     Raises:
         UnknownNameError: one does not exist, or the list is empty.
     """
-    from rvmon.language.checked.names_read import requirements_asked
+    from rvmon.language.checked.names_read import requirement_ids
 
     if listed is None:
         return None
@@ -105,7 +105,7 @@ def ids_of(listed: str | None, spec: Spec) -> tuple[str, ...] | None:
     if not ids:
         known = ", ".join(spec.requirements)
         raise UnknownNameError(f"the list of requirements is empty: there are {known}")
-    return requirements_asked(spec.checked, ids)
+    return requirement_ids(spec.checked, ids)
 
 
 def add_budget(parser: Parser) -> None:

@@ -20,7 +20,7 @@ from rvmon.verdicts import Verdict
 if TYPE_CHECKING:
     from rvmon import native
     from rvmon.analysis.truths import Question, RecordedTruths
-    from rvmon.analysis.window_values import Asked
+    from rvmon.analysis.window_values import WindowRequest
     from rvmon.cli.failure_notes import FailureNotes
     from rvmon.recordings.batch import Batch
     from rvmon.recordings.recording import FileRecording
@@ -106,8 +106,8 @@ def post_analysis(
         until = end if questions else max(values.until, windows.until)
         pieces: Iterable[Batch | Sample] | None = remembered.until(until)
         if pieces is None:
-            asked = {name for question in questions for name in question.names}
-            pieces = _read_again(spec, recording, asked | values.names | windows.names, until)
+            names_read = {name for question in questions for name in question.names}
+            pieces = _read_again(spec, recording, names_read | values.names | windows.names, until)
         if failures:
             whole = Trace((), names, end, recording.outages)
             pieces = windows.noted(values.noted(pieces), whole)
@@ -183,34 +183,34 @@ class _Windows:
     def __init__(self, spec: Spec, failures: Sequence[Attempt], origin: int) -> None:
         self._spec = spec
         self._origin = origin
-        self._asked: dict[tuple[str, int], list[Asked]] = {}
+        self._requests: dict[tuple[str, int], list[WindowRequest]] = {}
         for attempt in failures:
             from rvmon.analysis.window_values import windows_blamed
             from rvmon.cli.failure_notes import MOST_VALUES
 
-            assert attempt.blame is not None, "only these are asked for"
+            assert attempt.blame is not None, "only these are requested"
             requirement = spec.requirements[attempt.requirement]
             found = windows_blamed(spec.checked, requirement, attempt.blame)
             if found and len(found) <= MOST_VALUES:
                 key = attempt.requirement, attempt.number
-                self._asked[key] = [(attempt.decided or 0, window) for window in found]
-        asked = [asked for own in self._asked.values() for asked in own]
-        self.names: Set[str] = {name for _, window in asked for name in names_in(window)}
-        self.until = max((t for t, _ in asked), default=0)
-        self._values: Mapping[Asked, Scalar] = {}
+                self._requests[key] = [(attempt.decided or 0, window) for window in found]
+        requests = [request for own in self._requests.values() for request in own]
+        self.names: Set[str] = {name for _, window in requests for name in names_in(window)}
+        self.until = max((t for t, _ in requests), default=0)
+        self._values: Mapping[WindowRequest, Scalar] = {}
 
     def noted(self, pieces: Iterable[Batch | Sample], recording: Trace) -> Iterator[Batch | Sample]:
         """Pass the pieces through unchanged, and compute the windows.
 
         Of `recording`, only names, end and outages are used.
         """
-        if not self._asked:
+        if not self._requests:
             yield from pieces
             return
         from rvmon.analysis.window_values import WindowValues
 
-        asked = [asked for own in self._asked.values() for asked in own]
-        run = WindowValues(self._spec.checked, asked, self._origin, recording)
+        requests = [request for own in self._requests.values() for request in own]
+        run = WindowValues(self._spec.checked, requests, self._origin, recording)
         for piece in pieces:
             run.take(piece)
             yield piece
@@ -220,10 +220,10 @@ class _Windows:
         """For each failure: requirement, number, and the values at its decision with units."""
         from rvmon.analysis.window_values import unit_of
 
-        for (requirement, number), asked in self._asked.items():
+        for (requirement, number), requests in self._requests.items():
             own = {
                 format_window(window): value_text(value, unit_of(self._spec.checked, window) or "")
-                for t, window in asked
+                for t, window in requests
                 if (value := self._values.get((t, window))) is not None
             }
             yield requirement, number, own
@@ -239,12 +239,12 @@ def _first_failures(report: Report) -> Iterator[Attempt]:
 
 
 def _read_again(
-    spec: Spec, judged: FileRecording, asked: set[str], end: int
+    spec: Spec, judged: FileRecording, names: set[str], end: int
 ) -> Iterable[Batch | Sample]:
-    """Read a recording again up to `end` (ticks), at least the names in `asked`."""
+    """Read a recording again up to `end` (ticks), at least the names in `names`."""
     # In sampled time, and for messages, it matters that a sample came, whatever names it updates.
     narrow = spec.checked.time is not TimeModel.SAMPLED and not judged.is_of_messages
-    only = asked if narrow else None
+    only = names if narrow else None
     return Source(opened(spec, judged.path, only=only), end, is_cut=True).pieces()
 
 

@@ -183,9 +183,9 @@ def named_attempt(text: str, spec: Spec) -> tuple[str, str | None]:
             "R1 for the first failed attempt"
         )
     name, mark, number = match["name"], match["mark"], match["number"]
-    from rvmon.language.checked.names_read import requirements_asked
+    from rvmon.language.checked.names_read import requirement_ids
 
-    requirements_asked(spec.checked, [name])
+    requirement_ids(spec.checked, [name])
     return name, f"{name}{mark}{int(number)}" if number else None
 
 

@@ -104,7 +104,7 @@ def unfinished(
         for shard in shards:
             known |= _judged_before(_entries(shard, heading), stamps, is_moved=True)
         entries = _entries(path, heading) if resume else []
-        journal.begin(path, [heading, *map(msgspec.json.encode, entries)])
+        journal.create(path, [heading, *map(msgspec.json.encode, entries)])
     return Unfinished(path, shards, stamps, known | _judged_before(entries, stamps))
 
 

@@ -60,14 +60,14 @@ def _decide(network: Network, arguments: argparse.Namespace, budget: Budget) -> 
         for extended, query in chosen_queries(network, arguments.query):
             match query.formula:
                 case Chance() | Mean():
-                    going = Meter(budget, watch).goes_on
+                    going = Meter(budget, watch).continues
                     one = sample(extended, query, seed=arguments.seed, watch=going)
                     failed |= bool(one.margin) and not one.holds
                     data["simulated"].append(describe.sampled_data(one))
                     if in_words:
                         _print_sampled(one)
                 case Simulation():
-                    going = Meter(budget, watch).goes_on
+                    going = Meter(budget, watch).continues
                     drawn = trajectories(extended, query, seed=arguments.seed, watch=going)
                     data["simulated"].append(describe.simulation_data(query, drawn))
                     if in_words:
@@ -177,9 +177,9 @@ def _show_suite(network: Network, arguments: argparse.Namespace, budget: Budget)
 @contextmanager
 def _progress_shown() -> Iterator[Watch | None]:
     """Show the progress of a search in a line on standard error, if that is a terminal."""
-    with busy("starting") as told:
-        yield told and (
-            lambda progress: told(
+    with busy("starting") as show:
+        yield show and (
+            lambda progress: show(
                 f"{progress.visited:,} states, {progress.waiting:,} waiting, "
                 f"{progress.seconds:.0f} s"
             )

@@ -14,8 +14,8 @@ from contextlib import suppress
 from io import FileIO
 from typing import TYPE_CHECKING
 
-from rvmon.adapters.json_objects import JsonObjects, begin_of, feed_lines, read_lines
-from rvmon.cli.options import asked_ids, constants_of
+from rvmon.adapters.json_objects import JsonObjects, feed_lines, first_lines, read_lines
+from rvmon.cli.options import chosen_ids, constants_of
 from rvmon.cli.output import warn
 from rvmon.cli.reading import mapped_names, refuse_empty
 from rvmon.cli.watch_kept import no_line, refuse_others, watch_kept
@@ -69,14 +69,14 @@ def _watch_kept(arguments: argparse.Namespace, spec: Spec) -> int:
     with _opened(arguments) as file:
         lines = read_lines(file.fileno())
         is_file = stat.S_ISREG(os.fstat(file.fileno()).st_mode)
-        only = asked_ids(arguments, spec)
+        only = chosen_ids(arguments, spec)
         return watch_kept(arguments, spec, only, lines, is_file=is_file)
 
 
 def _watch_lines(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:
     with _opened(arguments) as file:
         lines = read_lines(file.fileno())
-        first, began = begin_of(lines, spec.schema)
+        first, began = first_lines(lines, spec.schema)
         if not any(line.strip() for line in first):
             raise no_line(arguments.source)
         followed = None
@@ -218,7 +218,7 @@ def _live(
     return Live(
         spec,
         clock=clock,
-        only=asked_ids(arguments, spec),
+        only=chosen_ids(arguments, spec),
         lag_ns=arguments.realtime,
         room=arguments.room,
         on_judged=judged,

@@ -111,16 +111,16 @@ def watch_kept(
     lost = [health for health in at_end.health if health.kind in _LOSSES and health.requirements]
     for names, fact in health_facts(lost, at_end.origin):
         warn(f"{names}: {fact}")
-    told = {name for name, verdict in monitor.monitor.verdicts.items() if verdict is Verdict.FAIL}
+    before = {name for name, verdict in monitor.monitor.verdicts.items() if verdict is Verdict.FAIL}
     failed = {
         attempt.requirement
         for attempt in at_end.attempts
         if attempt.verdict is Verdict.FAIL and attempt.decision is Decision.PREFIX
     }
-    if untold := sorted(failed - told):
+    if new := sorted(failed - before):
         # Not reported yet, as another line may have the same stamp.
-        warn(f"{', '.join(untold)}: fails at the last line; reported once a later stamp arrives")
-    return int(bool(lost or told or failed))
+        warn(f"{', '.join(new)}: fails at the last line; reported once a later stamp arrives")
+    return int(bool(lost or before or failed))
 
 
 def no_line(source: str) -> RvmonError:

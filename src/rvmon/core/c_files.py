@@ -130,9 +130,9 @@ def plan_files(plan: Plan) -> dict[str, str]:
 def _header(spec: CheckedSpec, packed: Packed, prefix: str) -> Iterator[str]:
     """The sizes and names of a plan."""
     upper = prefix.upper()
-    begin = memory_of(packed.data, 0)
+    base = memory_of(packed.data, 0)
     more = max(
-        -((begin - memory_of(packed.data, attempts)) // attempts)
+        -((base - memory_of(packed.data, attempts)) // attempts)
         for attempts in range(FEWEST, MOST + 1)
     )
     yield _remark(
@@ -152,7 +152,7 @@ def _header(spec: CheckedSpec, packed: Packed, prefix: str) -> Iterator[str]:
     )
     yield f"#define {upper}_MEMORY(attempts) \\"
     room = f"((attempts) < {FEWEST} ? {FEWEST} : (attempts))"
-    yield from (f"    ({begin + ALIGNMENT}U + {more}U * (unsigned){room})", "")
+    yield from (f"    ({base + ALIGNMENT}U + {more}U * (unsigned){room})", "")
     signals, events = list(packed.signals), list(packed.events)
     signal_types = [spec.signals[name].type for name in signals]
     yield from _enum(f"{upper}_SIGNAL", signals, list(map(_words, signal_types)))
@@ -162,9 +162,9 @@ def _header(spec: CheckedSpec, packed: Packed, prefix: str) -> Iterator[str]:
         yield from _enum(f"{upper}_LABEL", list(packed.labels))
     yield from _enum(f"{upper}_REQUIREMENT", list(packed.ids))
     yield f"extern const uint64_t {prefix}_plan[{upper}_PLAN_SIZE / 8];"
-    for name, (type_, values, said) in _tables(packed).items():
+    for name, (type_, values, note) in _tables(packed).items():
         if values:
-            yield f"extern {type_} {prefix}_{name}[{len(values)}]; /* {said} */"
+            yield f"extern {type_} {prefix}_{name}[{len(values)}]; /* {note} */"
     yield from ("", "#ifdef __cplusplus", "}", "#endif", "", "#endif")
 
 
@@ -180,7 +180,7 @@ def _words(type_: Type) -> str:
 def _enum(
     what: str,
     names: Sequence[str],
-    said: Sequence[str] = (),
+    notes: Sequence[str] = (),
     *,
     start: int = 0,
     of: str = "",
@@ -188,7 +188,7 @@ def _enum(
     """An enumeration of names, and their count."""
     yield f"enum {{{f' /* {of} */' if of and names else ''}"
     for number, (name, made) in enumerate(zip(names, identifiers(names), strict=True)):
-        words = f": {said[number]}" if said else ""
+        words = f": {notes[number]}" if notes else ""
         yield f"    {what}_{made} = {start + number}, /* {comment(name)}{words} */"
     yield from (f"    {what}S = {len(names)}", "};", "")
 
@@ -230,7 +230,7 @@ def _source(packed: Packed, prefix: str) -> Iterator[str]:
     words = [f"0x{word:016x}U" for word in array("Q", packed.data)]
     yield from (f"    {', '.join(words[i : i + 4])}," for i in range(0, len(words), 4))
     yield "};"
-    for name, (type_, values, _said) in _tables(packed).items():
+    for name, (type_, values, _note) in _tables(packed).items():
         if values:
             yield from ("", f"{type_} {prefix}_{name}[{len(values)}] = {{")
             yield from (f"    {value}," for value in values)

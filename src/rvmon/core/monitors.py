@@ -22,10 +22,10 @@ from rvmon.logic.plan import Plan, PlannedRule
 from rvmon.logic.state_formula import State, StateOp
 from rvmon.logic.state_graph import (
     Reach,
-    begins_with_attempt,
     graph_of,
     names_of,
     reach_of,
+    starts_with_attempt,
     varying,
 )
 from rvmon.logic.window_chains import Chain, chain_of
@@ -272,7 +272,7 @@ class Unit:
     def _flags(self) -> int:
         reach = self._reach
         replays, fresh = self._replays, self._is_fresh
-        forgets = fresh and reach is not None and reach.begins
+        forgets = fresh and reach is not None and reach.starts
         keeps_past = replays or (reach is not None and not fresh)
         captured = [capture.value for capture in self._requirement.captures]
         captures_now = any(isinstance(value, NowValue) for value in captured)
@@ -280,8 +280,8 @@ class Unit:
 
     def _forgets(self, state: State) -> bool:
         """Whether a stateful node carries no memory into a new attempt."""
-        begins = not self._replays and begins_with_attempt(state)
-        return state.op is StateOp.PASSED or begins
+        starts = not self._replays and starts_with_attempt(state)
+        return state.op is StateOp.PASSED or starts
 
     @cached_property
     def _replays(self) -> bool:
@@ -296,8 +296,8 @@ class Unit:
     @cached_property
     def _looks_back(self) -> bool:
         plan = self._plan
-        asked = [one for _, rule in plan.judges for one in (rule.required, rule.measured)]
-        return any(plan_of(one, plan.gap).looks_back for one in asked if one is not None)
+        cores = [one for _, rule in plan.judges for one in (rule.required, rule.measured)]
+        return any(plan_of(one, plan.gap).looks_back for one in cores if one is not None)
 
     @cached_property
     def _reach(self) -> Reach | None:
@@ -320,7 +320,7 @@ class Unit:
         if reach is None or not reach.is_fresh:
             return False
         no_edge = self._requirement.pulse or self._requirement.mode is Mode.WHENEVER
-        return self._plan.gap in (None, 1) or (reach.begins and no_edge)
+        return self._plan.gap in (None, 1) or (reach.starts and no_edge)
 
     def _shared(self, rule: PlannedRule) -> Iterator[State]:
         """The state formulas evaluated by an instance, not by its attempts."""
@@ -346,7 +346,7 @@ class Unit:
 def _consequent(rule: PlannedRule) -> Iterator[State]:
     """The state formulas evaluated by an attempt."""
     yield from rule.alphabet.propositions
-    yield from rule.asked
+    yield from rule.also_read
     named = [rule.again, rule.unborn]
     if rule.requirement.mode is Mode.WHENEVER:
         named += [rule.trigger, rule.running]

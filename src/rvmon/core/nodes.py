@@ -34,7 +34,7 @@ from rvmon.logic.state_formula import (
     Unborn,
     signals_of,
 )
-from rvmon.logic.state_graph import begun_by, lasting
+from rvmon.logic.state_graph import lasting, start_capture
 
 NEVER = (1 << 63) - 1  # no instant, or no bound
 
@@ -225,7 +225,7 @@ class Nodes:
             tally=0 if of.measured in _TALLIED else -1,
             most=of.most or 0,
             chosen=len(operands) - len(of.chosen),
-            since=self._names.captured.get(begun_by(state) or "", -1),
+            since=self._names.captured.get(start_capture(state) or "", -1),
             reads=tuple(reads),
         )
 
@@ -271,14 +271,14 @@ def _since(state: State) -> NodeOp:
 
 def _needed(plan: Plan) -> frozenset[int]:
     """The nodes needed once every signal is born and every trigger was TRUE or FALSE."""
-    states = [state for _, rule in plan.judges for state in _asked(rule, plan)]
+    states = [state for _, rule in plan.judges for state in _needed_states(rule, plan)]
     states += (literal.proposition for core in plan.truths for literal in literals(core))
     states += (watch.state for watch in plan.watches)
     determined = {rule.determined for rule in plan.rules if rule.determined is not None}
     return lasting(plan.graph, states, determined)
 
 
-def _asked(rule: PlannedRule, plan: Plan) -> Iterator[State]:
+def _needed_states(rule: PlannedRule, plan: Plan) -> Iterator[State]:
     """The state formulas of a rule that are needed beyond birth and `determined`."""
     named = (rule.trigger, rule.again, rule.unborn, rule.running, rule.blurs)
     yield from (state for state in named if state is not None)

@@ -251,8 +251,8 @@ class Part:
         if each is None:
             return {}
         # A field captured by `let` is read wherever its event occurs, in whatever instance.
-        asked = (state for rule in self._plan.judged for state in rule.states)
-        fields = keys_of(self._plan.graph, each, asked)
+        states = (state for rule in self._plan.judged for state in rule.states)
+        fields = keys_of(self._plan.graph, each, states)
         for event in events_of(*self._captured):
             if event != each.value.event:
                 fields.pop(event, None)
@@ -268,7 +268,7 @@ def pack(plan: Plan) -> Packed:
     sections = Sections()
     automata = Automata(sections)
     numbering = Numbering(plan.spec)
-    number = {id(rule): place for place, rule in enumerate(plan.asked)}
+    number = {id(rule): place for place, rule in enumerate(plan.all_rules)}
     parts = [
         Part(sections, automata, one, numbering, [number[id(rule)] for rule in one.rules])
         for one in (plan, *plan.units)
@@ -278,10 +278,10 @@ def pack(plan: Plan) -> Packed:
         len(plan.signals),
         len(plan.events),
         sum(len(event.fields) for event in plan.spec.events.values()),
-        len(plan.asked),
-        max((len(rule.captured) for rule in plan.asked), default=0),
+        len(plan.all_rules),
+        max((len(rule.captured) for rule in plan.all_rules), default=0),
     )
-    ids = tuple(rule.requirement.id for rule in plan.asked)
+    ids = tuple(rule.requirement.id for rule in plan.all_rules)
     return packed(plan.spec, ids, sections.data(plan.gap or 0, sizes))
 
 

@@ -168,8 +168,8 @@ class Sections:
         """
         # Each section starts at a multiple of 8, so that the core can read its records in place.
         padded = [bytes(data) + bytes(-len(data) % 8) for data in self._bytes.values()]
-        begin = HEADER.size + len(padded) * _ENTRY.size
-        offsets = accumulate(map(len, padded), initial=begin)
+        first = HEADER.size + len(padded) * _ENTRY.size
+        offsets = accumulate(map(len, padded), initial=first)
         entries = [
             _ENTRY.pack(offset, self.count(section))
             for section, offset in zip(Section, offsets, strict=False)

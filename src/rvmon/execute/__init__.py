@@ -34,7 +34,7 @@ class Work(NamedTuple):
     """Arguments of `parallel.execute`; see there."""
 
     tasks: Iterable[Any]
-    begin: Callable[[], Callable[[Any], Any]]
+    prepare: Callable[[], Callable[[Any], Any]]
     what: str
     instead: Callable[[Any, Ended], Any] | None
     timeout_s: float | None

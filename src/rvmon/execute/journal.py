@@ -52,7 +52,7 @@ def entries(path: Path, *, all_of_them: bool = False) -> list[bytes] | None:
     return found
 
 
-def begin(path: Path, first: Iterable[bytes]) -> None:
+def create(path: Path, first: Iterable[bytes]) -> None:
     """Write a new journal with these entries; an existing file is replaced.
 
     Raises:

@@ -43,7 +43,7 @@ def execute_on_dask(work: Work, address: str) -> Iterator[Any]:
             there is no `instead`.
         RvmonError: Dask is not installed, no scheduler answers, a worker has another rvmon, or a
             task cannot be pickled.
-        Exception: whatever `begin` or a task raised.
+        Exception: whatever `prepare` or a task raised.
     """
     with needed("Dask", "distributed"):
         import cloudpickle
@@ -57,18 +57,18 @@ def execute_on_dask(work: Work, address: str) -> Iterator[Any]:
             f"and workers with `dask worker {address} --nthreads 1`"
         ) from None
     with client:
-        yield from _Pool(client, cloudpickle.dumps(work.begin), work).results()
+        yield from _Pool(client, cloudpickle.dumps(work.prepare), work).results()
 
 
 class _Pool:
     """The tasks submitted to workers, and their results; see `parallel`."""
 
-    def __init__(self, client: Any, begin: bytes, work: Work) -> None:
+    def __init__(self, client: Any, prepare: bytes, work: Work) -> None:
         self._client = client
         self._work = work
         self._name = f"rvmon-{uuid.uuid4().hex}"
         # A task rather than scattered data, because Dask repeats a task whose worker is lost.
-        self._begin = client.submit(bytes, begin, key=f"{self._name}-begin")
+        self._prepare = client.submit(bytes, prepare, key=f"{self._name}-begin")
         self._tasks: dict[Any, tuple[int, bytes]] = {}
         self._starts: dict[int, tuple[float, str]] = {}
         self._finished: SimpleQueue[Any] = SimpleQueue()
@@ -123,7 +123,7 @@ class _Pool:
 
     def _submit(self, number: int, task: bytes) -> None:
         about = (self._name, number, program(), os.getcwd(), self._work.timeout_s)
-        arguments = (*about, self._begin, task)
+        arguments = (*about, self._prepare, task)
         future = self._client.submit(_do, *arguments, pure=False, priority=-number)
         self._tasks[future] = (number, task)
         future.add_done_callback(self._finished.put)
@@ -193,7 +193,7 @@ def _do(
     wanted: str,
     folder: str,
     timeout_s: float | None,
-    begin: bytes,
+    prepare: bytes,
     task: bytes,
 ) -> tuple[bool, bytes]:
     """Do a task in a worker, in the client's folder if it exists here; report the start."""
@@ -202,7 +202,7 @@ def _do(
     late = threading.Timer((timeout_s or 0.0) + LEFT_S, os._exit, [1])
     late.daemon = True
 
-    def begun() -> Callable[[Any], Any]:
+    def prepared() -> Callable[[Any], Any]:
         worker = get_worker()
         if name not in _WORK:
             if program() != wanted:
@@ -211,7 +211,7 @@ def _do(
             _WORK.clear()
             with suppress(OSError):
                 os.chdir(folder)
-            _WORK[name] = pickle.loads(begin)()  # noqa: S301 - from who has the work
+            _WORK[name] = pickle.loads(prepare)()  # noqa: S301 - from who has the work
         worker.log_event(name, (number, worker.address))
         if timeout_s is not None:
             late.start()
@@ -219,6 +219,6 @@ def _do(
 
     with _ONE_AT_A_TIME:
         try:
-            return answer(begun, task)
+            return answer(prepared, task)
         finally:
             late.cancel()

@@ -28,12 +28,12 @@ _Task = TypeVar("_Task")
 _Result = TypeVar("_Result")
 
 MOST_TASKS = 256  # the most tasks of a chunk
-BEGIN_S = 60.0  # seconds that a worker may take to start, in addition to the timeout of a task
+START_S = 60.0  # seconds that a worker may take to start, in addition to the timeout of a task
 
 
 def execute(
     tasks: Iterable[_Task],
-    begin: Callable[[], Callable[[_Task], _Result]],
+    prepare: Callable[[], Callable[[_Task], _Result]],
     *,
     jobs: int | str,
     what: str = "task",
@@ -51,8 +51,8 @@ def execute(
 
     Args:
         tasks: consumed as workers become free; with several processes they must be picklable.
-        begin: called once in each process before its first task; it returns the function that does
-            a task. Where processes are not forked, it is pickled once per process.
+        prepare: called once in each process before its first task; it returns the function that
+            does a task. Where processes are not forked, it is pickled once per process.
         jobs: the most processes; with 1, this process does all tasks, unless `instead` is given. Or
             the address of a Dask scheduler, whose workers do all tasks.
         what: the word for a task in messages.
@@ -66,26 +66,26 @@ def execute(
         WorkerLostError: a process was killed from outside and there is no `instead`; the message
             names its task.
         RvmonError: a task cannot be pickled, or no process can be started.
-        Exception: whatever `begin`, a task, or the iterator of `tasks` raised. Any of these errors
-            is raised after the results of all earlier tasks.
+        Exception: whatever `prepare`, a task, or the iterator of `tasks` raised. Any of these
+            errors is raised after the results of all earlier tasks.
 
     >>> list(execute([1, 2, 3], lambda: abs, jobs=1))
     [1, 2, 3]
     """
-    asked = Work(tasks, begin, what, instead, timeout_s)
+    whole = Work(tasks, prepare, what, instead, timeout_s)
     if isinstance(jobs, str):
         from rvmon.execute.on_dask import execute_on_dask
 
-        yield from execute_on_dask(asked, jobs)
+        yield from execute_on_dask(whole, jobs)
         return
     if jobs > 1 or instead is not None:
-        pool = _Pool(asked, jobs, fresh)
+        pool = _Pool(whole, jobs, fresh)
         try:
             yield from pool.results()
         finally:
             pool.end()
         return
-    work = begin()
+    work = prepare()
     for task in tasks:
         yield work(task)
 
@@ -96,7 +96,7 @@ class _Worker(Struct, eq=False):
     process: BaseProcess
     connection: Connection
     # number of tasks it has started in all, and the time of the last start (monotonic clock)
-    begun: Sequence[float]
+    started: Sequence[float]
     # the tasks of its present chunk: number, ascending, and pickle
     tasks: list[tuple[int, bytes]] = field(default_factory=list)
     answered: int = 0  # number of tasks answered in earlier chunks
@@ -105,7 +105,7 @@ class _Worker(Struct, eq=False):
 
     def task_s(self) -> float:
         """Seconds since it started its present task, or got the chunk if it has not started."""
-        return time.monotonic() - max(self.since, self.begun[1])
+        return time.monotonic() - max(self.since, self.started[1])
 
 
 class _Pool:
@@ -186,8 +186,8 @@ class _Pool:
         is_main = threading.current_thread() is threading.main_thread()
         parent = os.getpid() if forked and is_main else None
         here, there = self._context.Pipe()
-        begun = self._context.RawArray("d", 2)
-        arguments = (there, here, self._work.begin, parent, begun)
+        started = self._context.RawArray("d", 2)
+        arguments = (there, here, self._work.prepare, parent, started)
         process = self._context.Process(target=serve, args=arguments, daemon=True)
         try:
             with _interrupts_blocked():
@@ -196,7 +196,7 @@ class _Pool:
             message = f"no process can be started ({error.strerror}): use fewer (jobs)"
             raise RvmonError(message) from None
         there.close()
-        self._workers.append(_Worker(process, here, begun))
+        self._workers.append(_Worker(process, here, started))
         return self._workers[-1]
 
     def _remaining_tasks(self) -> Iterator[tuple[int, bytes]]:
@@ -254,8 +254,8 @@ class _Pool:
         """Seconds until the timeout of a worker's task."""
         if self._work.timeout_s is None:
             return inf
-        begun = worker.begun[0]
-        most = self._work.timeout_s if begun else self._work.timeout_s + BEGIN_S
+        started = worker.started[0]
+        most = self._work.timeout_s if started else self._work.timeout_s + START_S
         return most - worker.task_s()
 
     def _end_if_late(self, worker: _Worker) -> None:
@@ -268,12 +268,12 @@ class _Pool:
         """Remove a killed worker; its present task fails, its other tasks are given back."""
         seconds = worker.task_s()
         self._dismiss(worker)
-        begun = int(worker.begun[0])
-        if begun and begun == worker.answered:  # killed while idle: no task is to blame
+        started = int(worker.started[0])
+        if started and started == worker.answered:  # killed while idle: no task is to blame
             self._give_back(worker, worker.tasks)
             return
         # The answers to earlier tasks of the chunk are lost, so these are done again.
-        number, task = worker.tasks.pop(max(0, begun - worker.answered - 1))
+        number, task = worker.tasks.pop(max(0, started - worker.answered - 1))
         self._give_back(worker, worker.tasks)
         if self._work.instead is None:
             message = (

@@ -27,9 +27,9 @@ _PR_SET_PDEATHSIG = 1
 def serve(
     connection: Connection,
     other: Connection,
-    begin: Callable[[], Callable[[Any], Any]],
+    prepare: Callable[[], Callable[[Any], Any]],
     parent: int | None,
-    begun: MutableSequence[float],
+    started: MutableSequence[float],
 ) -> None:
     """Do the tasks that arrive, until the parent closes the connection.
 
@@ -41,9 +41,9 @@ def serve(
     Args:
         connection: to the parent.
         other: the parent's end of the connection, which is closed here.
-        begin: called before the first task; returns the function that does a task.
+        prepare: called before the first task; returns the function that does a task.
         parent: id of the process whose death kills this one on Linux; `None`: no process.
-        begun: shared memory that the parent reads if this process is lost: the number of tasks
+        started: shared memory that the parent reads if this process is lost: the number of tasks
             started in all, and the time of the last start on the monotonic clock.
     """
     other.close()
@@ -56,9 +56,9 @@ def serve(
     def next_task() -> Callable[[Any], Any]:
         nonlocal work
         if work is None:
-            work = begin()
-        begun[1] = time.monotonic()
-        begun[0] += 1
+            work = prepare()
+        started[1] = time.monotonic()
+        started[0] += 1
         return work
 
     with suppress(OSError):  # the parent has closed the connection

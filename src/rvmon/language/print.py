@@ -82,8 +82,8 @@ def _formula(formula: rv.Formula, level: int) -> str:
         case rv.Unary():
             return _age(formula, denied=False) or _unary(formula)
         case rv.Passed(since=since, after=after, strict=strict):
-            begin = "" if since is None else f" - {_name(since)}"
-            return f"now{begin} {'>' if strict else '>='} {format_numeric(after)}"
+            start = "" if since is None else f" - {_name(since)}"
+            return f"now{start} {'>' if strict else '>='} {format_numeric(after)}"
         case rv.Binary(op=op):
             text = _binary(formula)
             return f"({text})" if op.entry.level < level else text

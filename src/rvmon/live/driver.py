@@ -10,7 +10,7 @@ from threading import Condition, Lock, RLock
 from typing import TYPE_CHECKING
 
 from rvmon.errors import RvmonError, TraceError
-from rvmon.language.checked.names_read import several, sources_asked
+from rvmon.language.checked.names_read import several, source_names
 from rvmon.live.clock import FAR_NS, Clock, WallClock, refuse_far
 from rvmon.live.robot import Judgement, Robot, Status, Watch, with_delay
 from rvmon.live.sample_queue import Dropped, Gap, NewRun, Offered, OutageReport, Timers, Waiting
@@ -216,7 +216,7 @@ class Driver:
         *,
         is_over: bool = False,
     ) -> None:
-        some = sources_asked(self.spec.checked, names)
+        some = source_names(self.spec.checked, names)
         with self._lock:
             now = max(self._clock.now_ns(), self._stamped)
             if kind is not OutageReport.MISSED:  # samples offered from now on get later stamps
@@ -255,7 +255,7 @@ class Driver:
                 self._take(entry, former)
             for robot in self._robots.values():
                 robot.end()
-                robot.begin(self._watch)
+                robot.start(self._watch)
 
     def status(self, *, most_open: int | None = None) -> dict[str, Status]:
         """The status of each robot, in one consistent state.

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rvmon.errors import RvmonError, SnapshotError, TimeOrderError, TraceError
-from rvmon.execute.journal import add, begin, entries
+from rvmon.execute.journal import add, create, entries
 from rvmon.trace.time import whole_ticks
 
 if TYPE_CHECKING:
@@ -156,7 +156,7 @@ class DurableMonitor:
             "mark": self.mark,
             "snapshot": self.monitor.snapshot().decode(),
         }
-        begin(self._path, [json.dumps(head).encode()])
+        create(self._path, [json.dumps(head).encode()])
         self._kept = 0
 
     def step_ns(self, t_ns: int, values: Mapping[str, Any]) -> None:

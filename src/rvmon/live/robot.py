@@ -11,7 +11,7 @@ import msgspec
 from msgspec import structs
 
 from rvmon.errors import TimeOrderError, TraceError
-from rvmon.language.checked.names_read import requirements_asked
+from rvmon.language.checked.names_read import requirement_ids
 from rvmon.live.sample_queue import Dropped, Gap, OutageReport, Values
 from rvmon.session import Spec
 from rvmon.trace.sample import Health, HealthKind
@@ -73,7 +73,7 @@ class Watch:
     @property
     def ids(self) -> tuple[str, ...]:
         """The ids of the judged requirements, in the order of the file."""
-        return requirements_asked(self.spec.checked, self.only) or tuple(self.spec.requirements)
+        return requirement_ids(self.spec.checked, self.only) or tuple(self.spec.requirements)
 
     def monitor(self) -> Monitor:
         """Create a monitor for a run."""
@@ -149,15 +149,15 @@ class Robot:
         self._samples = self._lost = 0
         self._refusal = ""
         self._down: dict[str | None, str] = {}  # open outages: name (`None`: all) to reason
-        self.begin(watch)
+        self.start(watch)
 
-    def begin(self, watch: Watch) -> None:
+    def start(self, watch: Watch) -> None:
         """Start anew: verdicts and counts of earlier runs are discarded."""
         self._before: dict[str, set[Verdict]] = {name: set() for name in watch.ids}
         self._counts: Counter[tuple[str, Verdict]] = Counter()
-        self._begin(watch)
+        self._start_run(watch)
 
-    def _begin(self, watch: Watch) -> None:
+    def _start_run(self, watch: Watch) -> None:
         self._watch = watch
         self._monitor = watch.monitor()
         self._monitor.on_decided(self._hear)
@@ -177,7 +177,7 @@ class Robot:
         """End the current run at its present instant, with a health entry, and start another."""
         self._why = Health(kind, "samples", 1, self.floor, self._watch.ids, why)
         self.end()
-        self._begin(self._watch)
+        self._start_run(self._watch)
 
     def end(self) -> Report:
         """End the current run at its present instant; returns its report."""

@@ -67,11 +67,11 @@ def _bind(found: list[list[int]], one: int, other: int, bound: int) -> None:
     """Tighten one bound and close the matrix again."""
     # Only paths through the tightened bound can have become shorter, so n² steps suffice to close
     # the matrix again, instead of n³.
-    behind = [(place, most) for place, most in enumerate(found[other]) if most < NEVER]
+    bounded = [(place, most) for place, most in enumerate(found[other]) if most < NEVER]
     for row in found:
         if row[one] < NEVER:
             through = row[one] + bound
-            for place, most in behind:
+            for place, most in bounded:
                 if through + most < row[place]:
                     row[place] = through + most
 

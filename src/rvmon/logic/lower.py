@@ -68,9 +68,9 @@ def lower(
         UnmonitorableError: the trigger has a future operator.
     """
     favour = requirement.mode is Mode.WHENEVER and not requirement.pulse
-    begin = partial(Lowering, factory, period, favour, measured=measured, sampled=sampled)
-    lowering = begin()
-    truth_reader = begin(measured=False).reader if measured else lowering.reader
+    new_lowering = partial(Lowering, factory, period, favour, measured=measured, sampled=sampled)
+    lowering = new_lowering()
+    truth_reader = new_lowering(measured=False).reader if measured else lowering.reader
     of_windows = [
         rv.itself(capture.value) for capture in requirement.captures if rv.windows_in(capture.value)
     ]
@@ -95,7 +95,7 @@ def lower(
         # Where a past operator stands above a future one, the position alone falsifies nothing.
         again = None
         if not looks_back_at_future(requirement.consequent):
-            again = _at_once(begin(opened=True).core(requirement.consequent, True), factory)
+            again = _at_once(new_lowering(opened=True).core(requirement.consequent, True), factory)
         unborn = _unborn(requirement.consequent, factory) if favour else None
         doubt = None
         if requirement.captures:

@@ -119,8 +119,8 @@ class Lowering:
             ) if self._measured:
                 whole = rv.Unary(rv.UnaryOp.HISTORICALLY, operand, window)
                 self._made_up[id(whole)] = whole
-                begun = self.factory.leaf(Elapsed(window.high or 0))
-                also = begun if positive else self.factory.negation(begun)
+                elapsed = self.factory.leaf(Elapsed(window.high or 0))
+                also = elapsed if positive else self.factory.negation(elapsed)
                 return self.join_signed([(whole, positive)], positive, [also])
             case rv.Unary() | rv.Binary():
                 return self._core_future(self._rewritten(formula), positive)

@@ -48,7 +48,7 @@ class PlannedRule(Struct, frozen=True, eq=False):
     blurs: State | None = None
     # whether, in an instance with an unknown key, another attempt may have started anywhere
     blurs_anywhere: bool = False
-    asked: tuple[State, ...] = ()  # further state formulas whose values are needed
+    also_read: tuple[State, ...] = ()  # further state formulas whose values are needed
     captures_known: tuple[State, ...] = ()  # TRUE where the numbers captured from windows are known
     # whether it must be judged by stepping attempts, not as a chain of windows
     stepped: bool = False
@@ -63,7 +63,7 @@ class PlannedRule(Struct, frozen=True, eq=False):
         named = (self.trigger, self.again, self.unborn, self.determined, self.running, self.blurs)
         yield from (state for state in named if state is not None)
         yield from self.alphabet.propositions
-        yield from self.asked
+        yield from self.also_read
         yield from self.captures_known
         for rule in (self.hidden, self.doubted):
             if rule is not None:
@@ -115,7 +115,7 @@ class Plan(Struct, frozen=True, eq=False):
     uses: Mapping[str, Uses]  # by name, for all names that are read, also for captured values
     units: tuple[Plan, ...] = ()  # one plan for each requirement with captured values
     # all rules, with those of the units, in the order of the file
-    asked: tuple[PlannedRule, ...] = ()
+    all_rules: tuple[PlannedRule, ...] = ()
     truths: tuple[Core, ...] = ()  # formulas whose truth over the whole trace is kept
     # the bins of coverage, and the occasions at which they are sampled
     watches: tuple[Watch, ...] = ()
@@ -144,7 +144,7 @@ def plan_of(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
     """The plan of requirements as one unit, with shared state formulas."""
     states = (state for rule in rules for state in rule.states)
     captured = [capture.value for rule in rules for capture in rule.requirement.captures]
-    return replace(_shared(spec, states, captured), rules=tuple(rules), asked=tuple(rules))
+    return replace(_shared(spec, states, captured), rules=tuple(rules), all_rules=tuple(rules))
 
 
 def plan_in_units(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
@@ -156,7 +156,7 @@ def plan_in_units(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
     # attempt evaluates its own.
     shared = plan_of(spec, [rule for rule in rules if not rule.captured])
     units = tuple(plan_of(spec, [rule]) for rule in rules if rule.captured)
-    return replace(shared, units=units, asked=tuple(rules))
+    return replace(shared, units=units, all_rules=tuple(rules))
 
 
 def plan_of_truths(

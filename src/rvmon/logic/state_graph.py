@@ -53,22 +53,22 @@ class Graph(Struct, frozen=True, eq=False):
     remembers_captured: bool  # whether a node with memory depends on captured values
 
 
-def begun_by(state: sf.State) -> str | None:
+def start_capture(state: sf.State) -> str | None:
     """The name of the captured instant at which a window starts; `None` if there is none."""
     if state.amount is None:
         return None
-    begun = [part.passed for part in _members(state) if part.passed and part.passed.begins]
-    return begun[0].since if len(begun) == 1 else None
+    starts = [part.passed for part in _members(state) if part.passed and part.passed.starts]
+    return starts[0].since if len(starts) == 1 else None
 
 
-def begins_with_attempt(state: sf.State) -> bool:
+def starts_with_attempt(state: sf.State) -> bool:
     """Whether a window starts at a captured instant and reads no other captured value.
 
     Such a window needs no memory from before its attempt.
     """
-    if state.amount is None or begun_by(state) is None:
+    if state.amount is None or start_capture(state) is None:
         return False
-    others = [part for part in _members(state) if not (part.passed and part.passed.begins)]
+    others = [part for part in _members(state) if not (part.passed and part.passed.starts)]
     limit = rv.itself(state.amount.limit) if isinstance(state.amount, rv.Amount) else None
     others += [part for part in state.args[1:] if part.leaf is None or part.leaf != limit]
     return not any(map(_reads_captured, _all_of(others)))
@@ -105,10 +105,10 @@ def leaf_texts(
         leaf = state.leaf or state.compared
         if isinstance(leaf, sf.Shown) and not _is_captured(leaf):
             own = found.setdefault(_text_of(leaf), {})
-            asked = isinstance(leaf, rv.ProbeAtom)
-            if asked not in own or place in last:
-                own[asked] = state
-    return tuple((own[asked], text) for text, own in found.items() for asked in sorted(own))
+            is_probe = isinstance(leaf, rv.ProbeAtom)
+            if is_probe not in own or place in last:
+                own[is_probe] = state
+    return tuple((own[is_probe], text) for text, own in found.items() for is_probe in sorted(own))
 
 
 def _is_captured(leaf: sf.Shown) -> bool:
@@ -206,7 +206,7 @@ def graph_of(roots: Iterable[sf.State]) -> Graph:
         if state.op in (sf.StateOp.PREVIOUS, sf.StateOp.SINCE, sf.StateOp.AMOUNT, sf.StateOp.DOUBT):
             # Memory that reads captured values differs between attempts. Each attempt needs its
             # own from the past, unless the memory starts with the attempt.
-            remembers |= place in varies and not begins_with_attempt(state)
+            remembers |= place in varies and not starts_with_attempt(state)
             stateful.append(place)
         elif isinstance(state.leaf, sf.Elapsed) or state.op is sf.StateOp.PASSED:
             stateful.append(place)
@@ -228,7 +228,7 @@ class Reach(Struct, frozen=True):
     fields: Mapping[str, rv.FieldValue]
     others: frozenset[str]  # the names whose updates concern all instances
     is_fresh: bool  # whether an instance can be forked from the memory of an instance without a key
-    begins: bool  # whether an attempt starts only where the event of the `for each` occurs
+    starts: bool  # whether an attempt starts only where the event of the `for each` occurs
 
 
 def reach_of(graph: Graph, each: ForEach, trigger: sf.State | None, *, looks_back: bool) -> Reach:
@@ -258,16 +258,16 @@ def reach_of(graph: Graph, each: ForEach, trigger: sf.State | None, *, looks_bac
     )
 
 
-def keys_of(graph: Graph, each: ForEach, asked: Iterable[sf.State]) -> dict[str, rv.FieldValue]:
+def keys_of(graph: Graph, each: ForEach, used: Iterable[sf.State]) -> dict[str, rv.FieldValue]:
     """By event, the field that selects the instance it concerns; other events concern all.
 
-    `asked` are the state formulas whose values are used; a bare leaf among them must be exact.
+    `used` are the state formulas whose values are used; a bare leaf among them must be exact.
 
     An event has such a field if every leaf over it compares the field with the key, or is conjoined
     with a leaf that does: for any other instance the conjunction is FALSE, as without the event.
     """
     found = {each.value.event: each.value}
-    roots = {graph.index[state] for state in asked}
+    roots = {graph.index[state] for state in used}
     for name, places in graph.by_name.items():
         leaves = {place: graph.nodes[place].leaf for place in places}
         fields = {

@@ -107,7 +107,7 @@ class Reader(Reading[Four]):
         parts = sf.operands(leaf.left, leaf.right)
         known = [rv.itself(part) for part in parts if isinstance(part, rv.Read)]
         states = [self.four(comparison).read(sf.UNKNOWN) for comparison in known]
-        asked = [*map(self._unborn, known)]
+        parts_unborn = [*map(self._unborn, known)]
         for window in rv.windows_in(leaf.left, leaf.right):
             own = (self._truth_reader.four(part).read(sf.FALSE) for part in window.operands)
             states.append(factory.window(window, *own))
@@ -116,8 +116,8 @@ class Reader(Reading[Four]):
                     ago, born = window.window or 0, factory.negation(unborn)
                     early = factory.since(factory.state_true, born, ago, ago)
                     unborn = factory.negation(early)
-                asked.append(unborn)
-        return self._unborn_until(factory.compared(leaf, *dict.fromkeys(states)), asked)
+                parts_unborn.append(unborn)
+        return self._unborn_until(factory.compared(leaf, *dict.fromkeys(states)), parts_unborn)
 
     def _unborn(self, part: rv.SignalAtom | rv.Compare) -> sf.State:
         """Two-valued: some signal that `part` reads is unborn."""
@@ -126,10 +126,10 @@ class Reader(Reading[Four]):
         signals = tuple(sorted(sf.signals_of(part).items()))
         return self.factory.leaf(sf.Unborn(signals)) if signals else self.factory.state_false
 
-    def _unborn_until(self, value: sf.State, asked: Iterable[sf.State]) -> Four:
-        """A value that is unborn while any of `asked` is true, each of which says "is unborn"."""
+    def _unborn_until(self, value: sf.State, parts_unborn: Iterable[sf.State]) -> Four:
+        """A value that is unborn while any of `parts_unborn`, each two-valued, is true."""
         factory = self.factory
-        unborn = self._some_unborn(asked)
+        unborn = self._some_unborn(parts_unborn)
         if unborn is factory.state_false:
             return self._always_born(value)
 

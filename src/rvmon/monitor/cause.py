@@ -124,7 +124,7 @@ class TruthValues(NamedTuple):
     origin: int  # the first instant of the run, ticks
     gap: int | None  # ticks between two positions; `None` if only samples are positions
     # for an instance of `for each`, its first position; `None`: all positions count
-    begun: int | None
+    first: int | None
     truths: Sequence[int]  # of the propositions
     # the state of the propositions as the core noted it, with three instants per proposition: since
     # when it has its truth, when it was last FALSE, and when it was last TRUE; `NEVER` if not yet
@@ -188,8 +188,8 @@ class Moment(NamedTuple):
         longer than single instants.
         """
         last = self.flow.last_with(proposition, value, self.t)
-        if last is None and self.flow.begun is not None:
-            return f"it had not {verb} since {self.instant(self.flow.begun)}"
+        if last is None and self.flow.first is not None:
+            return f"it had not {verb} since {self.instant(self.flow.first)}"
         if last is None:
             return f"it had never {verb} before"
         if last == self.t:

@@ -194,8 +194,8 @@ class RecordingRun:
                 kind = planned.packed.signals[name]
                 columns.append((number, _cells(cells, kind, planned.words[number])))
             for name, event in batch.events.items():
-                says = np.ascontiguousarray(event.says)
-                columns.append((planned.numbers[name], says, self._fields(name, event)))
+                states = np.ascontiguousarray(event.states)
+                columns.append((planned.numbers[name], states, self._fields(name, event)))
         except KeyError:
             return None
         return tuple(columns)
@@ -210,7 +210,7 @@ class RecordingRun:
                 cells = occurrences.fields.get(field)
                 words = self._planned.words[len(self._planned.numbers) + place]
                 if cells is None:
-                    nothing = np.full(len(occurrences.says), NO_UPDATE, np.uint8)
+                    nothing = np.full(len(occurrences.states), NO_UPDATE, np.uint8)
                     columns.append((_LAYOUTS[kind], None, nothing))
                 else:
                     columns.append(_cells(cells, kind, words))
@@ -254,11 +254,11 @@ def _cells(
         numbers = np.array([words.get(label, -1) for label in cells.labels], np.int64)
         values = numbers[values]
         if (numbers < 0).any():
-            wrong = values < 0 if cells.says is None else (values < 0) & (cells.says == YES)
+            wrong = values < 0 if cells.states is None else (values < 0) & (cells.states == YES)
             if wrong.any():
                 raise KeyError
-    says = None if cells.says is None else np.ascontiguousarray(cells.says)
-    return _LAYOUTS[kind], np.ascontiguousarray(values), says
+    states = None if cells.states is None else np.ascontiguousarray(cells.states)
+    return _LAYOUTS[kind], np.ascontiguousarray(values), states
 
 
 def open_trace(

@@ -9,7 +9,7 @@ from struct import iter_unpack
 from typing import TYPE_CHECKING, Any
 
 from rvmon import native
-from rvmon.language.checked.names_read import sources_asked
+from rvmon.language.checked.names_read import source_names
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.monitor.intake import MOST_HELD, Intake, Turn
 from rvmon.monitor.packed_plan import PlannedCore
@@ -114,7 +114,7 @@ class Findings(HealthLog):
         if self.began is None:
             self.began = int(times[0])
         for name in self._awaited & batch.signals.keys():
-            row = batch.signals[name].first_said
+            row = batch.signals[name].first_given
             if row is not None:
                 self._arrived(name, int(times[row]))
         columns = dict(batch.signals)
@@ -277,8 +277,8 @@ class Losses:
         if self._intake is not None:
             return self._intake.delay, self._intake.floor
         _, last, reached = self._core.times()
-        behind = -TIME_LIMIT if last is None else last + 1
-        return 0, behind if reached is None else max(behind, reached)
+        after_last = -TIME_LIMIT if last is None else last + 1
+        return 0, after_last if reached is None else max(after_last, reached)
 
     def _named(self, names: Iterable[str] | None) -> set[str]:
         """Those of the given names that a requirement reads; `_UNREAD` if none is read.
@@ -287,8 +287,8 @@ class Losses:
             UnknownNameError: a name is not declared.
         """
         known = self._planned.numbers.keys()
-        asked = sources_asked(self._checked, names)
-        return {*known} if asked is None else {*(asked & known)} or {_UNREAD}
+        requested = source_names(self._checked, names)
+        return {*known} if requested is None else {*(requested & known)} or {_UNREAD}
 
     def known(self, names: Iterable[Any]) -> set[str]:
         """Validate names from a snapshot; raises `KeyError` for an unknown one."""

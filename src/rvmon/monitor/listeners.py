@@ -77,8 +77,8 @@ class Listeners:
         errors: list[Exception] = []
         for attempt in decided:
             for failures_only, callback in tuple(self._callbacks.values()):
-                asked = attempt.verdict is Verdict.FAIL or not failures_only
-                if attempt.decided is None or not asked:
+                is_wanted = attempt.verdict is Verdict.FAIL or not failures_only
+                if attempt.decided is None or not is_wanted:
                     continue
                 try:
                     callback(attempt)

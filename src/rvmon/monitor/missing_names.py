@@ -9,7 +9,7 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from rvmon.errors import MissingNameError
-from rvmon.language.checked.names_read import names_of_coverage, names_of_requirement, sources_asked
+from rvmon.language.checked.names_read import names_of_coverage, names_of_requirement, source_names
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.recordings.recording import FileRecording
 from rvmon.texts import MOST_NAMES, nearest, shorten
@@ -60,7 +60,7 @@ def expect_names(
         MissingNameError: it lacks a name that is not allowed; the message suggests columns.
         UnknownNameError: a name in `allowed` is not declared.
     """
-    some = None if isinstance(allowed, bool) else sources_asked(spec, allowed)
+    some = None if isinstance(allowed, bool) else source_names(spec, allowed)
     names = recording.names
     if names is None or names >= {*spec.signals, *spec.events}:
         return ()

@@ -10,7 +10,7 @@ from typing import Any, NoReturn
 
 from rvmon import native
 from rvmon.errors import RvmonError, SnapshotError, TraceError
-from rvmon.language.checked.names_read import requirements_asked
+from rvmon.language.checked.names_read import requirement_ids
 from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.monitor.feed import FedMonitor, Feed
 from rvmon.monitor.health import health_of_run
@@ -51,7 +51,7 @@ class Monitor(FedMonitor[Attempt]):
             self._core.keep(options.keep)
         self._listeners = Listeners()
         self._one_call = OneCall(self._core)
-        self._begin()
+        self._start_run()
 
     @property
     def core(self) -> native.Monitor:
@@ -60,9 +60,9 @@ class Monitor(FedMonitor[Attempt]):
 
     def reset(self) -> None:
         """Discard the run; the next sample starts another. Callbacks stay registered."""
-        self._one_call(self._begin)
+        self._one_call(self._start_run)
 
-    def _begin(self) -> None:
+    def _start_run(self) -> None:
         checked, options = self.compiled.checked, self.options
         self._feed = Feed(checked, self._planned, self._core, options.sources, options.settle)
         self._report: Report | None = None
@@ -344,7 +344,7 @@ def build_monitor(
     if keep is not None and (type(keep) is not int or keep < 0):
         raise RvmonError(f"keep={keep!r}: expected a whole number from 0 on, or None to keep all")
     given = None if sources is None else frozenset(sources)
-    planned = planned_core(compiled, requirements_asked(compiled.checked, only))
+    planned = planned_core(compiled, requirement_ids(compiled.checked, only))
     return Monitor(planned, compiled, Options(settle, given, keep))
 
 

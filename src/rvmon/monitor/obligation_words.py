@@ -123,7 +123,7 @@ class Words:
         if not atom.is_event:
             text = atom.quoted.strip("`")
             seen = moment.turned(cause.literal.proposition, text, atom.truth(False))
-        return f"{atom.quoted} {seen}{self._asked(node, atom, moment)}"
+        return f"{atom.quoted} {seen}{self._required(node, atom, moment)}"
 
     def _in_time(self, node: Literal | Until | Release, moment: Moment) -> str:
         """The clause after a literal that came true and so ended an obligation."""
@@ -135,7 +135,7 @@ class Words:
         due = "" if high is None else f"; it was due by {moment.instant(start + high)}"
         return f", {format_ticks(moment.t - start)} after {moment.instant(start)}{due}"
 
-    def _asked(self, node: Literal | Until | Release, atom: _Atom, moment: Moment) -> str:
+    def _required(self, node: Literal | Until | Release, atom: _Atom, moment: Moment) -> str:
         """The clause after a literal that failed: what was required of it, and when."""
         if isinstance(node, Literal):
             return f"; {atom.had_to('be')} then"

@@ -7,7 +7,7 @@ from functools import cache
 
 from msgspec.structs import replace
 
-from rvmon.language.checked.names_read import requirements_asked
+from rvmon.language.checked.names_read import requirement_ids
 from rvmon.logic.alphabet import Alphabet, alphabet_of
 from rvmon.logic.automaton import Automaton
 from rvmon.logic.construct import Budget, construct
@@ -41,7 +41,7 @@ def planned_rule(compiled: CompiledRequirement, *, measured: bool = False) -> Pl
         running=obligation.running if captures else None,
         blurs=_blurs(compiled) if captures else None, blurs_anywhere=obligation.doubt is not None,
         captures_known=obligation.captures_known, measured=figured,
-        asked=tuple(core.proposition for core in read if isinstance(core, Literal)),
+        also_read=tuple(core.proposition for core in read if isinstance(core, Literal)),
     )  # fmt: skip
 
 
@@ -85,7 +85,7 @@ def plan_alone(
         UnknownNameError: there is no such requirement.
         RvmonError: a requirement exceeds the limits of the core; the message says which and why.
     """
-    ids = requirements_asked(compiled.checked, only)
+    ids = requirement_ids(compiled.checked, only)
     rules = []
     for one in compiled.chosen(ids):
         if one.requirement.id in traced:  # uses the automaton shown to users: its edges are counted

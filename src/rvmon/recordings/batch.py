@@ -36,65 +36,65 @@ class Cells(Struct, frozen=True, dict=True):
     # float64[n], int64[n] or bool[n]; for labels int32[n], indices into `labels`. NaN is unknown
     values: NDArray[Any]
     # uint8[n], `UNKNOWN`, `YES` or `NO_UPDATE`; `None`: each row has a value
-    says: NDArray[np.uint8] | None = None
+    states: NDArray[np.uint8] | None = None
     labels: Sequence[str] | None = None  # `None`: the values are no labels
 
     @property
-    def first_said(self) -> int | None:
+    def first_given(self) -> int | None:
         """The first row with an update; `None`: there is none. There must be at least one row."""
-        if self.says is None:
+        if self.states is None:
             return 0
-        said = self.says != NO_UPDATE
-        return int(said.argmax()) if said.any() else None
+        given = self.states != NO_UPDATE
+        return int(given.argmax()) if given.any() else None
 
     @property
-    def last_said(self) -> int | None:
+    def last_given(self) -> int | None:
         """The last row with an update; `None`: there is none."""
         count = len(self.values)
-        if not count or self.says is None or self.says[-1] != NO_UPDATE:
+        if not count or self.states is None or self.states[-1] != NO_UPDATE:
             return count - 1 if count else None
-        said = (self.says != NO_UPDATE).nonzero()[0]
-        return int(said[-1]) if len(said) else None
+        given = (self.states != NO_UPDATE).nonzero()[0]
+        return int(given[-1]) if len(given) else None
 
     @property
     def holds_value(self) -> bool:
         """Whether some row has a known value."""
         unknown = self.unknown
-        if self.says is None:
+        if self.states is None:
             return len(self.values) > 0 if unknown is None else not unknown.all()
-        said = self.says != NO_UPDATE
-        return bool((said if unknown is None else said & ~unknown).any())
+        given = self.states != NO_UPDATE
+        return bool((given if unknown is None else given & ~unknown).any())
 
     @cached_property
     def unknown(self) -> NDArray[np.bool_] | None:
         """A mask of the rows with an unknown value, NaN or `UNKNOWN`, bool[n]; `None`: no row."""
-        found = None if self.says is None else self.says == UNKNOWN
+        found = None if self.states is None else self.states == UNKNOWN
         if holds_nan(self.values):
             nan = np.isnan(self.values)
-            if self.says is not None:
-                nan &= self.says == YES
+            if self.states is not None:
+                nan &= self.states == YES
             found = nan if found is None else found | nan
         return found if found is not None and found.any() else None
 
     def cut(self, start: int, stop: int) -> Cells:
         """The cells of rows `start` to `stop`, without `stop`."""
-        says = None if self.says is None else self.says[start:stop]
-        return Cells(self.values[start:stop], says, self.labels)
+        states = None if self.states is None else self.states[start:stop]
+        return Cells(self.values[start:stop], states, self.labels)
 
     def spread(self, rows: NDArray[np.intp], count: int) -> Cells:
         """Put the cells at `rows` of `count` rows; the other rows get no update."""
         values = np.zeros(count, self.values.dtype)
         values[rows] = self.values
-        return Cells(values, _spread(self.says, rows, count), self.labels)
+        return Cells(values, _spread(self.states, rows, count), self.labels)
 
     def of_rows(self, start: int, stop: int) -> Iterator[Any]:
         """Yield the values of rows as they are in samples; `_NOTHING` where there is no update."""
         values = self.values[start:stop].tolist()
-        says = repeat(YES) if self.says is None else self.says[start:stop].tolist()
-        for value, said in zip(values, says, strict=False):
-            if said == NO_UPDATE:
+        states = repeat(YES) if self.states is None else self.states[start:stop].tolist()
+        for value, state in zip(values, states, strict=False):
+            if state == NO_UPDATE:
                 yield _NOTHING
-            elif said == UNKNOWN:
+            elif state == UNKNOWN:
                 yield None
             else:
                 yield value if self.labels is None else self.labels[value]
@@ -103,33 +103,33 @@ class Cells(Struct, frozen=True, dict=True):
 class Occurrences(Struct, frozen=True):
     """The occurrences of an event in some rows."""
 
-    says: NDArray[np.uint8]  # uint8[n], `NO`, `UNKNOWN`, `YES` or `NO_UPDATE`
+    states: NDArray[np.uint8]  # uint8[n], `NO`, `UNKNOWN`, `YES` or `NO_UPDATE`
     # cells of payload fields by name; an occurrence with an update of a field has a payload
     fields: Mapping[str, Cells] = field(default_factory=dict)
 
     @property
     def with_payload(self) -> NDArray[np.bool_]:
         """A mask of the rows in which the event occurs with a payload, bool[n]."""
-        found = np.zeros(len(self.says), np.bool_)
+        found = np.zeros(len(self.states), np.bool_)
         for cells in self.fields.values():
-            found |= np.True_ if cells.says is None else cells.says != NO_UPDATE
-        found &= self.says == YES
+            found |= np.True_ if cells.states is None else cells.states != NO_UPDATE
+        found &= self.states == YES
         return found
 
     def cut(self, start: int, stop: int) -> Occurrences:
         """The occurrences in rows `start` to `stop`, without `stop`."""
         fields = {name: cells.cut(start, stop) for name, cells in self.fields.items()}
-        return Occurrences(self.says[start:stop], fields)
+        return Occurrences(self.states[start:stop], fields)
 
     def spread(self, rows: NDArray[np.intp], count: int) -> Occurrences:
         """Put the occurrences at `rows` of `count` rows; see `Cells.spread`."""
         fields = {name: cells.spread(rows, count) for name, cells in self.fields.items()}
-        return Occurrences(_spread(self.says, rows, count), fields)
+        return Occurrences(_spread(self.states, rows, count), fields)
 
     @property
     def unknown(self) -> NDArray[np.bool_] | None:
         """A mask of the rows in which the event may have occurred, bool[n]; `None`: no row."""
-        return self.says == UNKNOWN if UNKNOWN in self.says.tobytes() else None
+        return self.states == UNKNOWN if UNKNOWN in self.states.tobytes() else None
 
     def of_rows(self, start: int, stop: int) -> Iterator[Any]:
         """Yield the values of rows as they are in samples; see `Cells.of_rows`."""
@@ -138,13 +138,13 @@ class Occurrences(Struct, frozen=True):
             for payload, value in zip(payloads, cells.of_rows(start, stop), strict=True):
                 if value is not _NOTHING:
                     payload[name] = value
-        for said, payload in zip(self.says[start:stop].tolist(), payloads, strict=True):
-            yield (payload or True) if said == YES else _SAID[said]
+        for state, payload in zip(self.states[start:stop].tolist(), payloads, strict=True):
+            yield (payload or True) if state == YES else _OF_STATE[state]
 
 
 _NOTHING = object()
 
-_SAID = {NO: False, UNKNOWN: None, NO_UPDATE: _NOTHING}
+_OF_STATE = {NO: False, UNKNOWN: None, NO_UPDATE: _NOTHING}
 
 
 class Batch(Struct, frozen=True):
@@ -231,11 +231,11 @@ def outer_join(batches: Sequence[Batch], first: int) -> Batch | None:
 
 
 def _spread(
-    says: NDArray[np.uint8] | None, rows: NDArray[np.intp], count: int
+    states: NDArray[np.uint8] | None, rows: NDArray[np.intp], count: int
 ) -> NDArray[np.uint8]:
     """Put entries at `rows` of `count` rows, and `NO_UPDATE` in the others."""
     made = np.full(count, NO_UPDATE, np.uint8)
-    made[rows] = YES if says is None else says
+    made[rows] = YES if states is None else states
     return made
 
 
@@ -246,8 +246,10 @@ def without_ignored(batch: Batch, ignoring: frozenset[str]) -> Batch:
     for name, cells in own.items():
         unknown = cells.unknown
         if unknown is not None:
-            says = np.full(len(batch.times), YES, np.uint8) if cells.says is None else cells.says
-            changed[name] = replace(cells, says=np.where(unknown, np.uint8(NO_UPDATE), says))
+            states = (
+                np.full(len(batch.times), YES, np.uint8) if cells.states is None else cells.states
+            )
+            changed[name] = replace(cells, states=np.where(unknown, np.uint8(NO_UPDATE), states))
     return replace(batch, signals={**batch.signals, **changed}) if changed else batch
 
 
@@ -266,14 +268,14 @@ def note_batch(batch: Batch, rise: bool, alternations: Alternations, conflicts: 
     for name, cells in batch.signals.items():
         if not rise:
             _note_conflicts(batch, name, cells, conflicts)
-        said = _said(cells) if rise else last_said(batch, cells)
-        _note(alternations, name, cells.unknown, said, len(batch.times))
+        given = _given(cells) if rise else last_given(batch, cells)
+        _note(alternations, name, cells.unknown, given, len(batch.times))
     for name, event in batch.events.items():
-        bare = event.says != NO_UPDATE
+        bare = event.states != NO_UPDATE
         for path, cells in event.fields.items():
-            said = _said(cells)
-            bare &= cells.says == NO_UPDATE if cells.says is not None else np.False_
-            _note(alternations, f"{name}.{path}", cells.unknown, said, len(batch.times))
+            given = _given(cells)
+            bare &= cells.states == NO_UPDATE if cells.states is not None else np.False_
+            _note(alternations, f"{name}.{path}", cells.unknown, given, len(batch.times))
         _note(alternations, name, event.unknown, bare, len(batch.times))
 
 
@@ -281,52 +283,52 @@ def _note(
     alternations: Alternations,
     name: str,
     unknown: NDArray[np.bool_] | None,
-    said: NDArray[Any] | None,
+    given: NDArray[Any] | None,
     count: int,
 ) -> None:
-    """Note the known and unknown updates in the rows `said` (a mask, or indices; `None`: all)."""
+    """Note the known and unknown updates in the rows `given` (a mask, or indices; `None`: all)."""
     if unknown is not None:
-        looked_at = unknown if said is None else unknown[said]
+        looked_at = unknown if given is None else unknown[given]
         if looked_at.any():
             alternations.found[name].add_all(looked_at)
             return
         count = len(looked_at)
-    elif said is not None:
-        count = int(np.count_nonzero(said)) if said.dtype.kind == "b" else len(said)
+    elif given is not None:
+        count = int(np.count_nonzero(given)) if given.dtype.kind == "b" else len(given)
     if count:
         alternations.found[name].add_known(count)
 
 
-def _said(cells: Cells) -> NDArray[Any] | None:
+def _given(cells: Cells) -> NDArray[Any] | None:
     """A mask of the rows with an update, bool[n]; `None`: all."""
-    return None if cells.says is None else cells.says != NO_UPDATE
+    return None if cells.states is None else cells.states != NO_UPDATE
 
 
-def last_said(batch: Batch, cells: Cells) -> NDArray[np.intp]:
+def last_given(batch: Batch, cells: Cells) -> NDArray[np.intp]:
     """The last row with an update at each instant."""
-    rows = _rows_said(batch, cells)
+    rows = _rows_given(batch, cells)
     times = batch.times[rows]
     return rows[np.append(times[1:] != times[:-1], True)] if len(rows) else rows
 
 
 def _note_conflicts(batch: Batch, name: str, cells: Cells, conflicts: Conflicts) -> None:
     """Count neighbouring updates of a signal that differ at the same instant."""
-    rows = _rows_said(batch, cells)
+    rows = _rows_given(batch, cells)
     times, values = batch.times[rows], cells.values[rows]
     differs = values[1:] != values[:-1]
-    if cells.says is not None:
+    if cells.states is not None:
         # Two unknown values agree, whatever stands in `values`; an unknown and a known one do not.
-        none = cells.says[rows] == UNKNOWN
+        none = cells.states[rows] == UNKNOWN
         differs = (differs & ~(none[1:] & none[:-1])) | (none[1:] != none[:-1])
     found = np.flatnonzero((times[1:] == times[:-1]) & differs)
     if len(found):
         conflicts.add(name, int(times[found[0]]), len(found))
 
 
-def _rows_said(batch: Batch, cells: Cells) -> NDArray[np.intp]:
-    if cells.says is None:
+def _rows_given(batch: Batch, cells: Cells) -> NDArray[np.intp]:
+    if cells.states is None:
         return np.arange(len(batch.times))
-    return np.flatnonzero(cells.says != NO_UPDATE)
+    return np.flatnonzero(cells.states != NO_UPDATE)
 
 
 def unknown_rows(
@@ -339,10 +341,10 @@ def unknown_rows(
     unknown = cells.unknown
     if unknown is None:
         return
-    rows = last_said(batch, cells) if is_signal else _rows_said(batch, cells)
+    rows = last_given(batch, cells) if is_signal else _rows_given(batch, cells)
     rows = rows[unknown[rows]]
     for is_nan in (True, False):
-        null = np.zeros(len(rows), bool) if cells.says is None else cells.says[rows] == UNKNOWN
+        null = np.zeros(len(rows), bool) if cells.states is None else cells.states[rows] == UNKNOWN
         own = batch.times[rows[~null if is_nan else null]]
         if len(own):
             yield is_nan, own

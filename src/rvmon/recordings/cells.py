@@ -53,9 +53,9 @@ def batch_of(
             payloads.setdefault(column.name, {})[column.field] = columns[column]
     events = {}
     for name, fields in payloads.items():
-        says = occurrences(own.get(name), fields.values(), len(times))
-        given = {field: _only_where(cells, says != NO) for field, cells in fields.items()}
-        events[name] = Occurrences(says, given)
+        states = occurrences(own.get(name), fields.values(), len(times))
+        given = {field: _only_where(cells, states != NO) for field, cells in fields.items()}
+        events[name] = Occurrences(states, given)
     return Batch(times, signals, events, first, lines)
 
 
@@ -63,8 +63,8 @@ def _only_where(cells: Cells, rows: NDArray[np.bool_]) -> Cells:
     """The cells with "no update" in the rows where the mask is false."""
     if rows.all():
         return cells
-    says = np.uint8(YES) if cells.says is None else cells.says
-    return replace(cells, says=np.where(rows, says, np.uint8(NO_UPDATE)))
+    states = np.uint8(YES) if cells.states is None else cells.states
+    return replace(cells, states=np.where(rows, states, np.uint8(NO_UPDATE)))
 
 
 def occurrences(own: Cells | None, fields: Iterable[Cells], count: int) -> NDArray[np.uint8]:
@@ -74,15 +74,15 @@ def occurrences(own: Cells | None, fields: Iterable[Cells], count: int) -> NDArr
     cell is false.
     """
     if own is None:
-        says = np.full(count, NO_UPDATE, np.uint8)
+        states = np.full(count, NO_UPDATE, np.uint8)
     else:
-        says = np.where(own.values, np.uint8(YES), np.uint8(NO))
-        if own.says is not None:
-            says = np.where(own.says == YES, says, own.says)
+        states = np.where(own.values, np.uint8(YES), np.uint8(NO))
+        if own.states is not None:
+            states = np.where(own.states == YES, states, own.states)
     for field in fields:
-        given = np.True_ if field.says is None else field.says != NO_UPDATE
-        says = np.where(given & (says != NO), np.uint8(YES), says)
-    return says
+        given = np.True_ if field.states is None else field.states != NO_UPDATE
+        states = np.where(given & (states != NO), np.uint8(YES), states)
+    return states
 
 
 def cells_of_array(
@@ -102,11 +102,11 @@ def cells_of_array(
         stays = kept(values, gaps)
         if not stays.all():
             given = stays if given is None else given & stays
-    says = None if given is None else np.where(given, np.uint8(YES), np.uint8(NO_UPDATE))
+    states = None if given is None else np.where(given, np.uint8(YES), np.uint8(NO_UPDATE))
     if (kind, found) in ((Kind.BOOL, "b"), (Kind.INT, "i")):
-        return Cells(values.astype(_TYPES[kind], copy=False), says)
+        return Cells(values.astype(_TYPES[kind], copy=False), states)
     if kind is Kind.REAL and found in "if":
-        return Cells(values.astype(np.float64, copy=False), says)
+        return Cells(values.astype(np.float64, copy=False), states)
     if kind is Kind.REAL or found == "b":
         raise NotPlainError("a column holds other values than were declared")
     known = np.True_ if found != "f" else values == values
@@ -117,9 +117,9 @@ def cells_of_array(
     if not is_within or ((made := whole.astype(np.int64)) != whole).any():
         raise NotPlainError("a column holds other values than were declared")
     if not known.all():
-        says = np.full(len(values), YES, np.uint8) if says is None else says
-        says[~known & (says == YES)] = UNKNOWN
-    return Cells(made.astype(_TYPES[kind], copy=False), says)
+        states = np.full(len(values), YES, np.uint8) if states is None else states
+        states[~known & (states == YES)] = UNKNOWN
+    return Cells(made.astype(_TYPES[kind], copy=False), states)
 
 
 def kept(values: NDArray[Any], gaps: Gaps) -> NDArray[np.bool_]:
@@ -146,8 +146,8 @@ def cells_of_labels(
     if gaps.no_update in labels:
         kept = places != list(labels).index(gaps.no_update)
         given = kept if given is None else given & kept
-    says = None if given is None else np.where(given, np.uint8(YES), np.uint8(NO_UPDATE))
-    return Cells(places.astype(np.int32, copy=False), says, tuple(labels))
+    states = None if given is None else np.where(given, np.uint8(YES), np.uint8(NO_UPDATE))
+    return Cells(places.astype(np.int32, copy=False), states, tuple(labels))
 
 
 def cells_of_values(cells: Sequence[Any], kind: Kind, gaps: Gaps, nothing: object = None) -> Cells:
@@ -161,24 +161,24 @@ def cells_of_values(cells: Sequence[Any], kind: Kind, gaps: Gaps, nothing: objec
         return made
     labels: dict[str, int] = {}
     values: list[Any] = []
-    says: list[int] = []
+    states: list[int] = []
     for cell in cells:
         value = plain(cell)
         if value is nothing or gaps.holds(value):
-            said, value = NO_UPDATE, 0
+            state, value = NO_UPDATE, 0
         else:
             value = as_declared(value, kind)
             if not fits(value, kind):
                 raise NotPlainError("a column holds other values than were declared")
-            said = YES if value is not None else UNKNOWN
+            state = YES if value is not None else UNKNOWN
             if kind is Kind.LABEL and value is not None:
                 value = labels.setdefault(value, len(labels))
         values.append(value or 0)
-        says.append(said)
-    every = says.count(YES) == len(says)
+        states.append(state)
+    every = states.count(YES) == len(states)
     return Cells(
         _array(values, kind),
-        None if every else np.array(says, np.uint8),
+        None if every else np.array(states, np.uint8),
         (tuple(labels) or ("",)) if kind is Kind.LABEL else None,
     )
 

@@ -160,8 +160,8 @@ def _channels(reader: Any) -> Iterator[tuple[Any, Any]]:
 
 
 def _is_latched(metadata: Mapping[str, str]) -> bool:
-    asked = metadata.get("offered_qos_profiles", "")
-    return metadata.get("latching") == "1" or _KEPT_FOR_LATE.search(asked) is not None
+    profiles = metadata.get("offered_qos_profiles", "")
+    return metadata.get("latching") == "1" or _KEPT_FOR_LATE.search(profiles) is not None
 
 
 def _clip_ros1(
@@ -189,18 +189,18 @@ def _clip_ros2(
     return copied
 
 
-def _said_of(form: str, connection: Any) -> tuple[dict[str, Any], bool]:
+def _extra_of(form: str, connection: Any) -> tuple[dict[str, Any], bool]:
     """The arguments for copying a connection to a new bag, and whether its topic is latched."""
     own = connection.ext
     if form == "ros1":
-        said = {"md5sum": connection.digest, "callerid": own.callerid, "latching": own.latching}
-        return said, bool(own.latching)
+        extra = {"md5sum": connection.digest, "callerid": own.callerid, "latching": own.latching}
+        return extra, bool(own.latching)
     from rosbags.interfaces import QosDurability
 
     offered = own.offered_qos_profiles
-    said = {"rihs01": connection.digest, "serialization_format": own.serialization_format}
+    extra = {"rihs01": connection.digest, "serialization_format": own.serialization_format}
     is_latched = any(one.durability is QosDurability.TRANSIENT_LOCAL for one in offered)
-    return {**said, "offered_qos_profiles": offered}, is_latched
+    return {**extra, "offered_qos_profiles": offered}, is_latched
 
 
 def _clip_bag(
@@ -216,7 +216,7 @@ def _clip_bag(
         latched = {
             (connection.topic, connection.id)
             for connection in reader.connections
-            if connection.topic not in happening and _said_of(form, connection)[1]
+            if connection.topic not in happening and _extra_of(form, connection)[1]
         }
         # Copy all connections in order: messages of one instant are read back in that order, and
         # topics without messages are kept. Connections that do not differ become one.
@@ -225,9 +225,9 @@ def _clip_bag(
         for one in reader.connections:
             key = (one.topic, one.msgtype, one.digest, repr(one.ext))
             if key not in alike:
-                said, _ = _said_of(form, one)
+                extra, _ = _extra_of(form, one)
                 alike[key] = writer.add_connection(
-                    one.topic, one.msgtype, msgdef=one.msgdef.data, **said
+                    one.topic, one.msgtype, msgdef=one.msgdef.data, **extra
                 )
             connections[one.id] = alike[key]
 

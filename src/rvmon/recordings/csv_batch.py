@@ -112,14 +112,14 @@ class _Reader:
         room = int(1.1 * (len(text) - start) / self._row_bytes) + 16
         columns = 1 + len(self.layout.columns)
         numbers = np.empty((columns, room), np.int64)
-        says = np.empty((columns, room), np.uint8)
+        states = np.empty((columns, room), np.uint8)
         lines = np.empty(room, np.int64)
         odd = np.empty((max(_ODD, columns), 4), np.int64)
         labels = np.empty((self._labels, 4), np.int64)
         table = np.zeros(2 * len(labels), np.int32)
         ended, rows, at, end, passed, odd_count, label_count = native_csv.read(
             text, start, is_ended, csv.field_size_limit(), *self.layout.numbers, self._absent,
-            numbers, says, lines, odd, labels, table,
+            numbers, states, lines, odd, labels, table,
         )  # fmt: skip
         fault = None
         if (hole := text.find(b"\0", start, at)) >= 0:
@@ -133,7 +133,7 @@ class _Reader:
             if row >= rows:
                 break
             try:
-                self._read_odd(_cell(text, *ends), place, row, numbers, says)
+                self._read_odd(_cell(text, *ends), place, row, numbers, states)
             except TraceError as error:
                 rows, fault = row, (lines.item(row), error)
                 break
@@ -141,7 +141,9 @@ class _Reader:
         if rows:
             words = [(of, _cell(text, *ends)) for of, *ends, _ in labels[:label_count].tolist()]
             cells = {
-                column: self._cells(column, numbers[place, :rows], says[place, :rows], words, place)
+                column: self._cells(
+                    column, numbers[place, :rows], states[place, :rows], words, place
+                )
                 for place, column in enumerate(self.layout.columns, 1)
             }
             first = lines.item(0)
@@ -176,7 +178,7 @@ class _Reader:
         return found.ended, found.end
 
     def _read_odd(
-        self, text: str, place: int, row: int, numbers: NDArray[Any], says: NDArray[Any]
+        self, text: str, place: int, row: int, numbers: NDArray[Any], states: NDArray[Any]
     ) -> None:
         """Read an odd cell as single rows are read, and store it at its column and row."""
         if place == 0:
@@ -184,11 +186,11 @@ class _Reader:
             return
         column = self.layout.columns[place - 1]
         if not text or text.encode() == self._absent:
-            says[place, row] = NO_UPDATE
+            states[place, row] = NO_UPDATE
             return
         try:
             value = as_declared(scalar_of_text(text, column.kind), column.kind)
-            says[place, row] = UNKNOWN if value is None else YES
+            states[place, row] = UNKNOWN if value is None else YES
             if column.kind is Kind.REAL:
                 numbers[place].view(np.float64)[row] = value
             else:
@@ -200,7 +202,7 @@ class _Reader:
         self,
         column: Column,
         values: NDArray[Any],
-        says: NDArray[Any],
+        states: NDArray[Any],
         words: Sequence[tuple[int, str]],
         place: int,
     ) -> Cells:
@@ -211,7 +213,7 @@ class _Reader:
             renumbered = np.zeros(len(words) + 1, np.int32)
             renumbered[list(own)] = [labels[label] for label in own.values()]
             places = renumbered[values]
-            given = says == YES
+            given = states == YES
             if "" in labels:  # a cell of non-ASCII spaces, which only Python strips
                 given &= places != labels[""]
             return cells_of_labels(places, given, tuple(labels) or ("",), gaps)
@@ -220,9 +222,9 @@ class _Reader:
             made = values.astype(np.bool_)
         if gaps:
             if gaps.nan:
-                says[says == UNKNOWN] = NO_UPDATE
-            says[~kept(made, gaps) & (says == YES)] = NO_UPDATE
-        cells = Cells(made, None if says.min() == says.max() == YES else says)
+                states[states == UNKNOWN] = NO_UPDATE
+            states[~kept(made, gaps) & (states == YES)] = NO_UPDATE
+        cells = Cells(made, None if states.min() == states.max() == YES else states)
         _ = cells.unknown  # cached: this thread has the values at hand
         return cells
 

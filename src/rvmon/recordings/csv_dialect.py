@@ -39,7 +39,7 @@ _NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?|[+-]?(nan|inf
 _COMMA = re.compile(r"([+-]?\d*),(\d+([eE][+-]?\d+)?)", re.ASCII)
 _POINT = re.compile(r"[+-]?\d*\.\d+([eE][+-]?\d+)?", re.ASCII)
 _COMMENT = re.compile(r"\s*(#|//|%(?!time\b))\s*")
-_SEPARATOR_SAID = re.compile(r'"?sep=(.)"?\s*', re.IGNORECASE)
+_SEPARATOR_LINE = re.compile(r'"?sep=(.)"?\s*', re.IGNORECASE)
 _UNIT_IN_NAME = re.compile(r"(?P<name>.*?\S)\s*(\[(?P<unit>[^\[\]]*)\]|\((?P<same>[^()]*)\))")
 
 _PARTS = {"ns": 1, "nsec": 1, "nsecs": 1, "nanosec": 1, "nanosecs": 1, "nanoseconds": 1}
@@ -119,8 +119,8 @@ def dialect_of(head: bytes) -> Dialect:
     if len(head) == _LOOKED_AT:
         lines = lines[:-1]
     above, separators = 0, _SEPARATORS
-    if lines and (said := _SEPARATOR_SAID.fullmatch(lines[0])):
-        above, separators = 1, (said[1],)
+    if lines and (stated := _SEPARATOR_LINE.fullmatch(lines[0])):
+        above, separators = 1, (stated[1],)
     for first in range(above, min(len(lines), _MOST_ABOVE)):
         if not lines[first].strip() or _COMMENT.match(lines[first]):
             continue

@@ -53,7 +53,7 @@ class LastUpdates:
                 yield name, (piece.t, known(values[name]))
             return
         for name in names & piece.signals.keys():
-            row = piece.signals[name].last_said
+            row = piece.signals[name].last_given
             if row is not None:
                 [value] = piece.signals[name].of_rows(row, row + 1)
                 yield name, (int(piece.times[row]), known(value))
@@ -81,14 +81,14 @@ class ValuesAt:
         self.known: dict[tuple[int, str], Scalar] = {}  # by instant and name
         self._stale_after = stale_after
         self._updates = LastUpdates(names, ignoring)
-        self._asked: dict[int, Set[str]] = {}
+        self._requests: dict[int, Set[str]] = {}
         self._next = FOREVER
         self._since: int | None = None
 
     def ask(self, instant: int, names: Set[str]) -> None:
         """Request signals at an instant (ticks); ignored if later pieces were taken already."""
         if self._since is None or instant >= self._since:
-            self._asked[instant] = self._asked.get(instant, set()) | names
+            self._requests[instant] = self._requests.get(instant, set()) | names
             self._next = min(self._next, instant)
 
     def take(self, pieces: Sequence[Batch | Sample]) -> None:
@@ -105,20 +105,20 @@ class ValuesAt:
 
     def finish(self) -> None:
         """Settle all open requests at the end of the recording."""
-        while self._asked:
+        while self._requests:
             self._settle(None)
 
     def _settle(self, piece: Batch | Sample | None) -> None:
         """Find the values requested at the next instant, which may lie in `piece`."""
         instant = self._next
         updates = self._updates.until(instant, piece)
-        for name in self._asked.pop(instant):
+        for name in self._requests.pop(instant):
             # By the last update, not the last change: a repeated value is not stale.
             t, value = updates.get(name, (instant, None))
             limit = self._stale_after.get(name)
             is_stale = limit is not None and instant > t + limit
             self.known[instant, name] = None if is_stale else value
-        self._next = min(self._asked, default=FOREVER)
+        self._next = min(self._requests, default=FOREVER)
 
 
 def first_of(piece: Batch | Sample) -> int:

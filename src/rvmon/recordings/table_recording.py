@@ -265,7 +265,7 @@ def instants(column: Any, stamps: Stamps) -> NDArray[np.int64]:
     if kind is Kind.REAL and _is_whole(column):
         kind = Kind.INT
     made = cells_of_column(stamps.column, column, kind, NO_GAPS)
-    if made.says is not None:
+    if made.states is not None:
         raise NotPlainError("its stamps are no plain numbers")
     return ticks_of_column(made.values, stamps)
 

@@ -181,7 +181,7 @@ class _Panels:
         report = content.run.report
         samples = held(content.run.samples)
         # Kept, because each access to a sample of a long run reads a block.
-        self._begin = samples[0].t if samples else report.origin
+        self._start = samples[0].t if samples else report.origin
         self._changes: dict[int, Mapping[str, Changes]] = {}
         self._waits = {
             name: waits_of(content.spec.requirements[name], attempts)
@@ -228,7 +228,7 @@ class _Panels:
         report, samples = run.report, run.samples
         tracks = self._tracks(run, name)
         if not attempts:
-            view = whole_run(report, self._begin)
+            view = whole_run(report, self._start)
             verdict, miss = report.verdicts[name], self._miss(name)
             yield Panel(panel_id(name, None), name, None, verdict, view, tracks, None, miss=miss)
         candidates: list[Candidate] = []
@@ -283,7 +283,7 @@ class _Panels:
         """The truth of each subformula over the part of a view within the run."""
         if self._truths is None or not self._is_dissected:
             return ()
-        start, stop = max(view.start, self._begin), min(view.end, self._truths.end)
+        start, stop = max(view.start, self._start), min(view.end, self._truths.end)
         if start > stop:
             return ()
         requirement = self._content.spec.requirements[attempt.requirement]

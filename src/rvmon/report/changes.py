@@ -194,11 +194,11 @@ class RunChanges:
             cells = piece.signals[name]
             if is_seen or name in self._everywhere:
                 self.by_name[name].add_cells(piece, cells)
-            elif (row := cells.last_said) is not None:  # the value at the start of the next piece
+            elif (row := cells.last_given) is not None:  # the value at the start of the next piece
                 self.by_name[name].add_cells(piece.cut(row, row + 1), cells.cut(row, row + 1))
         for name in self.by_name.keys() & piece.events.keys():
             if is_seen or name in self._everywhere:
-                self.by_name[name].add_occurrences(piece.times, piece.events[name].says)
+                self.by_name[name].add_occurrences(piece.times, piece.events[name].states)
 
     def _looks_at(self, first: int, last: int) -> bool:
         """Whether any instant from `first` to `last` is needed; calls must be in order of time."""
@@ -245,9 +245,9 @@ class Changes:
         """Add the updates of a signal in rows."""
         import numpy as np
 
-        from rvmon.recordings.batch import last_said
+        from rvmon.recordings.batch import last_given
 
-        rows = last_said(batch, cells)
+        rows = last_given(batch, cells)
         if not len(rows):
             return
         times, values = batch.times[rows], cells.values[rows]
@@ -277,14 +277,14 @@ class Changes:
         self._last = int(times[-1])
         self._known = None if hidden[-1] else _plain(values[-1])
 
-    def add_occurrences(self, times: NDArray[Any], says: NDArray[Any]) -> None:
+    def add_occurrences(self, times: NDArray[Any], states: NDArray[Any]) -> None:
         """Add the occurrences of an event in rows; at equal instants a sure one wins."""
         from rvmon.recordings.batch import UNKNOWN, YES
 
-        may = (says == UNKNOWN) | (says == YES)
+        may = (states == UNKNOWN) | (states == YES)
         occurrences: dict[int, Scalar] = {}
-        for t, said in zip(times[may].tolist(), says[may].tolist(), strict=True):
-            occurrences[t] = True if said == YES else occurrences.get(t)
+        for t, state in zip(times[may].tolist(), states[may].tolist(), strict=True):
+            occurrences[t] = True if state == YES else occurrences.get(t)
         self._found += occurrences.items()
 
     def _settle(self) -> None:

@@ -227,14 +227,14 @@ def _drawing(column: Column, profile: Profile) -> ET.Element:
 
 def _runs(stretches: Sequence[Stretch]) -> Iterator[tuple[int, list[Stretch]]]:
     """The maximal runs of stretches without a gap; short silences are bridged."""
-    said = [place for place, stretch in enumerate(stretches) if stretch.low is not None]
-    steps = sorted(after - before for before, after in pairwise(said))
+    filled = [place for place, stretch in enumerate(stretches) if stretch.low is not None]
+    steps = sorted(after - before for before, after in pairwise(filled))
     # The median, as silences are longer than the usual step and would raise a mean.
     usual = steps[len(steps) // 2] if steps else 1
     first = 0
-    for place in range(1, len(said) + 1):
-        if place == len(said) or said[place] - said[place - 1] > 3 * usual:
-            run = said[first:place]
+    for place in range(1, len(filled) + 1):
+        if place == len(filled) or filled[place] - filled[place - 1] > 3 * usual:
+            run = filled[first:place]
             yield run[0], [stretches[one] for one in range(run[0], run[-1] + 1)]
             first = place
 

@@ -82,19 +82,19 @@ def write_verdicts(
     """
     recorded = iter(samples)
     first = next(recorded, None)
-    begin = report.end or 0
+    earliest = report.end or 0
     if first is not None:
-        begin, recorded = first.t, chain((first,), recorded)
+        earliest, recorded = first.t, chain((first,), recorded)
     else:
-        begin = min((attempt.triggered for attempt in report.attempts), default=begin)
-    if begin < 0:
+        earliest = min((attempt.triggered for attempt in report.attempts), default=earliest)
+    if earliest < 0:
         raise RvmonError(f"cannot write {path}: MCAP has no instants before 0 s")
     names = {
         name
         for verdict in report.verdicts
         for name in names_of_requirement(spec.requirements[verdict])
     }
-    states = sorted(_states(report, begin), key=itemgetter(0))
+    states = sorted(_states(report, earliest), key=itemgetter(0))
     frames = [] if scene is None else [(t, SCENE, one) for t, one in scene_updates(scene)]
     values = _values(spec, recorded, names)
     messages = merge(states, _attempts(spec, report), values, frames, key=itemgetter(0))
@@ -129,7 +129,7 @@ def _value_schemas(
     return schemas
 
 
-def _states(report: Report, begin: int) -> Iterator[_Message]:
+def _states(report: Report, earliest: int) -> Iterator[_Message]:
     """The state of each requirement at the start and at each change."""
     changes: dict[str, dict[int, list[tuple[int, Verdict | None]]]] = {}
     end = report.end or 0
@@ -139,7 +139,7 @@ def _states(report: Report, begin: int) -> Iterator[_Message]:
         of_requirement.setdefault(_settled(attempt, end), []).append((-1, attempt.verdict))
     for name in report.verdicts:
         still_open, last, counts = 0, Verdict.NOT_TRIGGERED, Counter[Verdict]()
-        for t, steps in sorted({begin: [], **changes.get(name, {})}.items()):
+        for t, steps in sorted({earliest: [], **changes.get(name, {})}.items()):
             for step, verdict in steps:
                 still_open += step
                 if verdict is not None:

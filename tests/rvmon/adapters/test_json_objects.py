@@ -9,9 +9,9 @@ from rvmon import Verdict, loads
 from rvmon.adapters.json_objects import (
     PROLOGUE,
     JsonObjects,
-    begin_of,
     decoded_object,
     feed_lines,
+    first_lines,
     read_lines,
 )
 from rvmon.errors import TraceError
@@ -172,7 +172,7 @@ def test_lines_are_read_as_they_come():
 )
 def test_the_first_line_that_says_something_tells_whether_lines_have_stamps(lines, taken, stamp):
     """What a program greets with does not; all that was read is given on."""
-    assert begin_of(iter(lines), loads(SPEC).schema) == (lines[:taken], stamp)
+    assert first_lines(iter(lines), loads(SPEC).schema) == (lines[:taken], stamp)
 
 
 def test_a_line_longer_than_any_is_given_up(tmp_path, monkeypatch):

@@ -137,7 +137,7 @@ def test_many_attempts_have_the_rows_that_few_have(folder):
 @pytest.mark.slow
 def test_another_run_does_not_go_on_with_it(folder, says):
     words = ["run", "s.rv", "good.csv", "good.csv", "--out", "v.csv", "--resume"]
-    journal.begin(folder / "v.csv.unfinished", [b"another"])
+    journal.create(folder / "v.csv.unfinished", [b"another"])
     assert "was started with another specification" in says(2, *words).err
     assert main([*words[:-1]]) == 0
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rvmon.execute.journal import add, begin, entries
+from rvmon.execute.journal import add, create, entries
 
 ENTRIES = [b"first", b"", b'{"second": "\xc3\xa9"}', b"third"]
 
@@ -10,7 +10,7 @@ ENTRIES = [b"first", b"", b'{"second": "\xc3\xa9"}', b"third"]
 @pytest.fixture
 def path(tmp_path):
     path = tmp_path / "a.journal"
-    begin(path, ENTRIES[:2])
+    create(path, ENTRIES[:2])
     for entry in ENTRIES[2:]:
         add(path, entry)
     return path

@@ -298,7 +298,7 @@ def test_to_begin_takes_no_time_of_a_task(tmp_path):
 
 def test_a_task_that_comes_first_is_ended_as_others_are(monkeypatch):
     """Not after the time to begin as well, which its process did not need."""
-    monkeypatch.setattr(parallel, "BEGIN_S", 3600)
+    monkeypatch.setattr(parallel, "START_S", 3600)
     tasks = execute([600, 0], doing(time.sleep), jobs=1, instead=told, timeout_s=0.5)
     assert [*tasks] == [(600, True, "it took more than 0.5 s"), None]
 

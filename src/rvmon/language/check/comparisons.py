@@ -164,15 +164,15 @@ def _extreme(
         # A comparison of a field is false where its event does not occur, so "all members satisfy
         # it" is written as "no member violates it", which is also right for a window without
         # members.
-        if how in every and (lone.begun or of.most or occurs):
+        if how in every and (lone.started or of.most or occurs):
             return rv.Unary(rv.UnaryOp.NOT, over(how.denied), None, span)
         one: rv.Formula = quantities.compare(how, (added, span), limit, span)
         if of.most is not None:
             counted = rv.WindowValue(rv.Measured.COUNT, of.operand, None, most=of.most, counted=one)
             return rv.Amount(counted, rv.Literal(1), span=span)
         whole = rv.UnaryOp.HISTORICALLY if how in every else rv.UnaryOp.ONCE
-        if lone.begun is not None:
-            one = rv.Binary(rv.BinaryOp.AND, lone.begun, one, None, span)
+        if lone.started is not None:
+            one = rv.Binary(rv.BinaryOp.AND, lone.started, one, None, span)
         return rv.Unary(whole, one, rv.Interval(0, of.window), span)
 
     if op not in _EQUALITY:
@@ -297,6 +297,6 @@ def _age(age: sc.Age, op: rv.CompareOp, limit: quantities.Placed, span: Span) ->
     if window < 0:
         return rv.Constant(older, span)
     updated = rv.ProbeAtom(rv.Probe.UPDATED, age.name, span)
-    begun = rv.Binary(rv.BinaryOp.OR, updated, rv.BoundAtom(rv.Bound.START, span), None, span)
-    recent = rv.Unary(rv.UnaryOp.ONCE, begun, rv.Interval(0, window), span)
+    started = rv.Binary(rv.BinaryOp.OR, updated, rv.BoundAtom(rv.Bound.START, span), None, span)
+    recent = rv.Unary(rv.UnaryOp.ONCE, started, rv.Interval(0, window), span)
     return rv.Unary(rv.UnaryOp.NOT, recent, None, span) if older else recent

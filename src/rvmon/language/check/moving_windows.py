@@ -162,7 +162,7 @@ class Bounded(Struct, frozen=True):
         """The condition that the window is over; its length is captured under a name of `word`."""
         trigger = self.scope.trigger
         assert trigger is not None, "what is required at the trigger has one"
-        trigger.begun(span)
+        trigger.started(span)
         return rv.passed(rv.TRIGGERED, rv.Captured(trigger.number(word, self.seconds)), True, span)
 
 

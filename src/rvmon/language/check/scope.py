@@ -75,7 +75,7 @@ class Lone(Struct, frozen=True):
     added: Quantity | None = None  # the x of a window over numbers
     share: bool = False  # whether it is a share, divided by D
     # the condition that the trigger has come, if only members since then count
-    begun: rv.Formula | None = None
+    started: rv.Formula | None = None
 
 
 TimeValue = Age | Now | Moment
@@ -96,7 +96,7 @@ class AtTrigger(Struct, frozen=True):
 
     captures: list[Capture] = field(default_factory=list)
 
-    def begun(self, span: Span) -> rv.Passed:
+    def started(self, span: Span) -> rv.Passed:
         """The condition that the trigger has come; captures its instant."""
         if not any(capture.name == rv.TRIGGERED for capture in self.captures):
             self.captures.append(Capture(rv.TRIGGERED, rv.NowValue()))

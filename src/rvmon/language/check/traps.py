@@ -130,8 +130,8 @@ def _later(part: rv.Formula) -> str:
     due = max(map(_reach, subformulas(part)))
     if not due:
         return f"leave out the first instant: `start or {_operand(part)}`"
-    begin = format_duration(due)
-    return f"let it start after that time: `always[{begin}, inf) {_operand(part)}`"
+    start = format_duration(due)
+    return f"let it start after that time: `always[{start}, inf) {_operand(part)}`"
 
 
 def _reach(part: rv.Formula) -> int:

@@ -157,15 +157,15 @@ class CompareOp(StrEnum):
     GT = ">", operator.gt, "is above"
 
     holds: Callable[[Any, Any], Any]  # compares two numbers, or arrays of them
-    said: str  # its wording in English
+    wording: str  # its wording in English
 
     def __new__(
-        cls, sign: str, holds: Callable[[Any, Any], Any] = operator.eq, said: str = ""
+        cls, sign: str, holds: Callable[[Any, Any], Any] = operator.eq, wording: str = ""
     ) -> CompareOp:
         """A member: its sign, with the comparison and its wording."""
         member = str.__new__(cls, sign)
         member._value_ = sign
-        member.holds, member.said = holds, said
+        member.holds, member.wording = holds, wording
         return member
 
     @property
@@ -311,7 +311,7 @@ class Passed(Struct, frozen=True):
     span: Span | None = None
 
     @property
-    def begins(self) -> bool:
+    def starts(self) -> bool:
         """Whether it is true from a captured instant on, that is, `>= 0`."""
         return self.since is not None and self.after == Literal(0) and not self.strict
 

@@ -86,7 +86,7 @@ def several(names: Iterable[str] | None) -> tuple[str, ...] | None:
     return None if names is None else tuple(names)
 
 
-def requirements_asked(spec: CheckedSpec, only: Iterable[str] | None) -> tuple[str, ...] | None:
+def requirement_ids(spec: CheckedSpec, only: Iterable[str] | None) -> tuple[str, ...] | None:
     """The requested ids of requirements, checked; `None` stands for all.
 
     Raises:
@@ -135,7 +135,7 @@ def _labels(requirement: Requirement, kind: str) -> set[str]:
     return set(requirement.tags) if kind == "tag" else {requirement.severity} - {""}
 
 
-def sources_asked(spec: CheckedSpec, names: Iterable[str] | None) -> frozenset[str] | None:
+def source_names(spec: CheckedSpec, names: Iterable[str] | None) -> frozenset[str] | None:
     """The requested names of signals and events, checked; `None` stands for all.
 
     Raises:

@@ -91,8 +91,8 @@ class Operator(Struct, frozen=True):
     # an English clause; `{left}` and `{right}`, or `{it}`, are its operands, `{no_left}` and so on
     # their negations, `{some}` and `{all}` name its interval. If empty,
     # `analysis/plain_english.py` words it in its own way
-    said: str
-    denied: str  # the clause of its negation; if empty, "not so" is put before `said`
+    wording: str
+    denied: str  # the clause of its negation; if empty, "not so" is put before `wording`
     doc: str  # its value in a few words
     dual: str = ""  # the sign of its dual, `not op(not φ)`; empty if it has none
     chained: bool = False  # whether it is associative and written in chains without brackets
@@ -140,8 +140,8 @@ def _historically(reading: Reading[T], it: T, window: Interval) -> T:
 
 def _held(reading: Reading[T], it: T, window: Interval) -> T:
     """`held`: `historically` for D, and D has passed since the first instant."""
-    begun = _once(reading, reading.constant(True), Interval(window.high or 0, None))
-    return reading.both(_historically(reading, it, window), begun)
+    complete = _once(reading, reading.constant(True), Interval(window.high or 0, None))
+    return reading.both(_historically(reading, it, window), complete)
 
 
 def _release(reading: Reading[T], left: T, right: T, window: Interval) -> T:

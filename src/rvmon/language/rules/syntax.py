@@ -41,16 +41,16 @@ def two_sides(whole: Span, operator: Span, connective: Span, near: Span) -> Diag
     `whole` is `a unless b` and `operator` is `unless`.
     """
     first, second = short(operator.text), short(connective.text)
-    behind = connective.start >= whole.end
+    is_after = connective.start >= whole.end
     text, side = short(whole.text), short(near.text)
-    other = f"{first} ({side} {second} …)" if behind else f"(… {second} {side}) {first}"
-    alone = f"({text}) {second} …" if behind else f"… {second} ({text})"
+    other = f"{first} ({side} {second} …)" if is_after else f"(… {second} {side}) {first}"
+    alone = f"({text}) {second} …" if is_after else f"… {second} ({text})"
     return finding(
         REACH,
         f"`{first}` next to `{second}` can be read in two ways here",
         whole,
         connective,
-        fix=f"write `… {other}` or `{alone}`" if behind else f"write `{other} …` or `{alone}`",
+        fix=f"write `… {other}` or `{alone}`" if is_after else f"write `{other} …` or `{alone}`",
     )
 
 

@@ -129,7 +129,7 @@ def _with_constants(
     return structs.replace(document, declarations=tuple(changed))
 
 
-def asked_on(network: nta.Network, text: str) -> tuple[nta.Network, nta.Query]:
+def query_on(network: nta.Network, text: str) -> tuple[nta.Network, nta.Query]:
     """Resolve a query on a network, which is extended if the query compares differences of clocks.
 
     Raises:
@@ -138,7 +138,7 @@ def asked_on(network: nta.Network, text: str) -> tuple[nta.Network, nta.Query]:
 
     >>> from rvmon.models.language.load import loads_network
     >>> plain = loads_network("clock x, y automaton a { location l start l edge l -> l do x = 0 }")
-    >>> network, query = asked_on(plain, "E<> y - x > 3")
+    >>> network, query = query_on(plain, "E<> y - x > 3")
     >>> network.variables[-1].name
     'y - x <= 3'
     """
@@ -225,9 +225,9 @@ def _formula(written: syntax.Expression, resolver: Resolver, top: sc.Scope) -> n
                 fix = "write a condition on the state: sup{p}: e"
                 raise model_error("TA020", "a condition on runs", written.span, fix)
             shown = tuple(_term(term, resolver, top) for term in terms)
-            asked = nta.Extremes(ends, condition, shown)
+            extremes = nta.Extremes(ends, condition, shown)
             nta.refuse_fraction(resolver.fraction)
-            return asked
+            return extremes
         case _:
             decided = _decided(written, resolver, top)
             nta.refuse_fraction(resolver.fraction)
@@ -265,8 +265,8 @@ def _decided(
     written: syntax.Expression, resolver: Resolver, top: sc.Scope
 ) -> Expression | nta.LeadsToFormula:
     if isinstance(written, syntax.Assuming):
-        asked = _decided(written.query, resolver, top)
-        return assuming(asked, resolver.expression(written.premise, top), written.span)
+        query = _decided(written.query, resolver, top)
+        return assuming(query, resolver.expression(written.premise, top), written.span)
     if not isinstance(written, syntax.LeadsTo):
         return resolver.condition(written, top)
     left, right = resolver.condition(written.left, top), resolver.condition(written.right, top)
@@ -295,20 +295,20 @@ def _check_channels(parts: Parts, automata: Iterable[nta.Automaton], findings: F
 
 
 def chosen_queries(
-    network: nta.Network, asked: Sequence[str] | None
+    network: nta.Network, texts: Sequence[str] | None
 ) -> list[tuple[nta.Network, nta.Query]]:
     """The queries of a model, or those requested by id or text, each with its network.
 
     Raises:
         ModelError: the model has none, or a requested text is neither an id nor a query.
     """
-    if asked is None:
+    if texts is None:
         if not network.queries:
             fix = "give one with --query, or write `query: …` into the model"
             raise model_error("TA020", "the model has no query", None, fix)
         return [(network, query) for query in network.queries]
     by_id = {query.id: query for query in network.queries if query.id}
-    for text in asked:
+    for text in texts:
         parts = [part.strip() for part in text.split(",")]
         if text.isidentifier() and text not in by_id and by_id:
             own = ", ".join(by_id)
@@ -316,4 +316,4 @@ def chosen_queries(
         if len(parts) > 1 and all(part in by_id for part in parts):
             several = " ".join(f"--query {part}" for part in parts)
             raise model_error("TA020", f"`{text}` is not a query", None, f"write {several}")
-    return [(network, by_id[text]) if text in by_id else asked_on(network, text) for text in asked]
+    return [(network, by_id[text]) if text in by_id else query_on(network, text) for text in texts]

@@ -136,8 +136,8 @@ class Functions:
             message = f"`{text.name}` returns an array or record"
             raise model_error("TA016", message, text.span, fix)
         place = self.place(result, [f"{text.name}(…)"], None)
-        body, goes_on = Bodies(text, resolver).statements(text.body.statements, inner)
-        if goes_on:
+        body, continues = Bodies(text, resolver).statements(text.body.statements, inner)
+        if continues:
             missing = ex.Missing(text.name, text.span)
             body.append(ex.Return(ex.Constant(0)) if text.type is None else missing)
         slots = [*parameters, *indices]

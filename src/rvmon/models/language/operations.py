@@ -138,10 +138,10 @@ _LINEAR = {op: (ex.PathOp(runs), linear) for (runs, linear), op in _OF_CTL.items
 
 
 def assuming(
-    asked: ex.Expression | LeadsToFormula, premise: ex.Expression, span: Span
+    query: ex.Expression | LeadsToFormula, premise: ex.Expression, span: Span
 ) -> ex.PathFormula:
     """Restrict a query to the runs that satisfy a premise."""
-    match asked:
+    match query:
         case LeadsToFormula(left, right, None):
             answered = ex.BinaryOperation(
                 ex.BinaryOp.IMPLY, left, ex.PathFormula(ex.PathOp.FINALLY, right)
@@ -152,7 +152,7 @@ def assuming(
             body = ex.PathFormula(linear, inner, None, left)
         case ex.PathFormula(ex.PathOp.EVERY_RUN | ex.PathOp.SOME_RUN as quantifier, body):
             pass
-        case _ if isinstance(asked, LeadsToFormula) or not is_linear(asked):
+        case _ if isinstance(query, LeadsToFormula) or not is_linear(query):
             fix = "write p --> q, A<> p, or a formula of LTL such as G (p imply F q)"
             raise model_error("TA020", "`assuming` needs a query about whole runs", span, fix)
         case body:

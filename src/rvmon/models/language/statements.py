@@ -101,9 +101,9 @@ class Bodies:
         """The statements that can be reached, and whether their end can be reached."""
         made: list[ex.Statement] = []
         for statement in written:
-            more, goes_on = self._statement(statement, scope)
+            more, continues = self._statement(statement, scope)
             made += more
-            if not goes_on:
+            if not continues:
                 return made, False
         return made, True
 
@@ -206,9 +206,9 @@ class Bodies:
         place = resolver.functions.place(kind, [f"{self.text.name}.{written.name}"], None)
         symbol = sc.PlacedSymbol(ex.BaseType.INT, ex.Slot(place))
         inner.symbols[written.name], inner.places[written.name] = symbol, span
-        body, goes_on = self.statements(written.body, inner.inner({}))
+        body, continues = self.statements(written.body, inner.inner({}))
         here = ex.VariableValue(symbol.slot)
-        if goes_on:
+        if continues:
             after = ex.BinaryOperation(ex.BinaryOp.ADD, here, ex.Constant(1))
             body.append(_set(symbol, after, span, resolver))
         first = _set(symbol, ex.Constant(values.start), span, resolver)

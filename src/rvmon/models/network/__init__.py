@@ -184,10 +184,10 @@ class Extremes:
     terms: tuple[Term, ...]
 
 
-Asked = Chance | Mean | Simulation | Extremes
+ValueQuery = Chance | Mean | Simulation | Extremes
 """Queries answered by numbers or values instead of yes or no."""
 
-QueryFormula = ex.Expression | LeadsToFormula | Asked
+QueryFormula = ex.Expression | LeadsToFormula | ValueQuery
 
 
 @dataclass(frozen=True, slots=True)
@@ -254,7 +254,7 @@ class Network:
         return tuple(reversed(self.names.functions.locals))
 
 
-def check_clocks(network: Network, asked: Iterable[int] = ()) -> None:
+def check_clocks(network: Network, of_query: Iterable[int] = ()) -> None:
     """Refuse queries whose answer depends on fractions or on clocks with rates other than 1."""
     refuse_fraction(network.fraction)
     if next(network.rates, None) is None:
@@ -263,7 +263,7 @@ def check_clocks(network: Network, asked: Iterable[int] = ()) -> None:
         *(place.invariant for a in network.automata for place in a.locations),
         *(edge.guard for a in network.automata for edge in a.edges),
     ]
-    compared = {clock.clock for guard in guards for clock in guard.clocks} | set(asked)
+    compared = {clock.clock for guard in guards for clock in guard.clocks} | set(of_query)
     found = [(p, r) for p, r in network.rates if r.clock in compared or network.has_split_edges]
     if found:
         place, rate = found[0]

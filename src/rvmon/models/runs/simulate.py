@@ -46,14 +46,14 @@ def trial_of(
     horizon: int,
     random: Random,
     mean_wait: float,
-    goes_on: Callable[[], bool],
+    continues: Callable[[], bool],
 ) -> Callable[[], bool]:
     """Make a function that simulates a run: whether it meets a formula within the horizon."""
     space = Space(network, GRID)
     pieces = pieces_of(sought, GRID)
 
     def meets() -> bool:
-        run = stretches(space, horizon * GRID, random, mean_wait * GRID, goes_on)
+        run = stretches(space, horizon * GRID, random, mean_wait * GRID, continues)
         return any(
             _window(piece, clocks, rates, 0, stay) is not None
             for state, clocks, rates, stay in run
@@ -64,21 +64,21 @@ def trial_of(
 
 
 def stretches(
-    space: Space, horizon: int, random: Random, mean_wait: float, goes_on: Callable[[], bool]
+    space: Space, horizon: int, random: Random, mean_wait: float, continues: Callable[[], bool]
 ) -> Iterator[tuple[State, list[float], Sequence[float], int]]:
     """Simulate one run: each state, the clocks when it starts, their rates and its duration.
 
     Clocks and times are in grid steps.
 
     Raises:
-        CutShortError: `goes_on` stopped the run.
+        CutShortError: `continues` stopped the run.
     """
     state, paces = space.initial(), _Paces(space.network)
     assert state is not None, "the network can start"
     clocks: list[float] = [0] * (1 + len(space.network.clocks))
     now = 0
     for number in range(1, MOST_MOVES + 1):
-        if number % CHECK_EVERY == 0 and not goes_on():
+        if number % CHECK_EVERY == 0 and not continues():
             raise CutShortError
         rates = paces.rates(state)
         drawn = _draw(space, state, clocks, rates, random, paces.waits(state, mean_wait))

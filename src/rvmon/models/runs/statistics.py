@@ -103,7 +103,7 @@ def trajectories(
     def one() -> Trajectory:
         now, points = 0, dict[tuple[int, tuple[Fraction, ...]], None]()
         horizon, wait = formula.horizon * GRID, MEAN_WAIT * GRID
-        for state, clocks, rates, stay in stretches(space, horizon, random, wait, runs.goes_on):
+        for state, clocks, rates, stay in stretches(space, horizon, random, wait, runs.continues):
             points[now, values(state, clocks)] = None
             now += stay
             later = [clock + stay * rate for clock, rate in zip(clocks, rates, strict=True)]
@@ -156,13 +156,13 @@ class _Runs:
         self._watch = watch
         self._count = 0
 
-    def goes_on(self) -> bool:
+    def continues(self) -> bool:
         """Whether to continue, with another run or within one."""
         return self._watch is None or self._watch(self._count)
 
     def drawn(self, draw: Callable[[], Drawn], most: int) -> Iterator[Drawn]:
         """The results of at most `most` runs."""
-        while self._count < most and self.goes_on():
+        while self._count < most and self.continues():
             try:
                 yield draw()
             except CutShortError:
@@ -181,7 +181,7 @@ def _chance(network: Network, query: Query, chance: Chance, random: Random, runs
         raise model_error("TA020", reason, query.span, fix)
     meets = chance.op is PathOp.FINALLY
     sought = normal_form(chance.body, positive=meets)
-    trial = trial_of(network, sought, chance.horizon, random, MEAN_WAIT, runs.goes_on)
+    trial = trial_of(network, sought, chance.horizon, random, MEAN_WAIT, runs.continues)
     if chance.sign is not None:
         return _tested(query, chance, lambda: trial() == meets, runs)
     met = [found == meets for found in runs.drawn(trial, chance.runs or RUNS)]
@@ -215,7 +215,7 @@ def _mean(network: Network, query: Query, mean: Mean, random: Random, runs: _Run
     best: Callable[[list[float]], float] = max if mean.largest else min
 
     def reached() -> float:
-        run = stretches(space, mean.horizon * GRID, random, MEAN_WAIT * GRID, runs.goes_on)
+        run = stretches(space, mean.horizon * GRID, random, MEAN_WAIT * GRID, runs.continues)
         return best([number_in(mean.value, value(s.locations, s.values)) for s, *_ in run])
 
     found = list(runs.drawn(reached, mean.runs or RUNS))

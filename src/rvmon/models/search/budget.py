@@ -105,7 +105,7 @@ class Meter:
             self._watch(Progress(self.visited + visited, waiting, seconds))
         return not self.stopped
 
-    def goes_on(self, runs: int) -> bool:
+    def continues(self, runs: int) -> bool:
         """Whether one more run may be simulated after `runs` of them."""
         return self.look(runs, 0)
 

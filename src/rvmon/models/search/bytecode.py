@@ -95,9 +95,9 @@ class Programs:
         """Emit statements; return the stack depth they need, and whether their end is reached."""
         depth = 1
         for statement in statements:
-            more, goes_on = self._statement(statement)
+            more, continues = self._statement(statement)
             depth = max(depth, more)
-            if not goes_on:
+            if not continues:
                 return depth, False
         return depth, True
 

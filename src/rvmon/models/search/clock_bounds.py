@@ -47,19 +47,19 @@ def joined(several: Iterable[ClockBounds]) -> ClockBounds:
 def location_bounds(
     network: Network,
     automaton: Automaton,
-    asked: Mapping[int, Sequence[ex.ClockCompare]] | None = None,
+    of_query: Mapping[int, Sequence[ex.ClockCompare]] | None = None,
 ) -> list[ClockBounds]:
     """The bounds for each location of an automaton, from its guards and invariants.
 
     Args:
         network: the whole network.
         automaton: one of its automata.
-        asked: by location, the comparisons of a query that matter only while the automaton is
+        of_query: by location, the comparisons of a query that matter only while the automaton is
             there.
     """
     bounds = [ClockBounds() for _ in automaton.locations]
     for index, location in enumerate(automaton.locations):
-        bounds[index].note((*location.invariant.clocks, *(asked or {}).get(index, ())), network)
+        bounds[index].note((*location.invariant.clocks, *(of_query or {}).get(index, ())), network)
     resets = []
     for edge in automaton.edges:
         own = bounds[edge.source]

@@ -48,7 +48,7 @@ class Plan:
             for a in network.automata
         ]
         # Comparisons of clocks in the query, by automaton (`None`: any) and location.
-        self._asked: dict[int | None, dict[int, list[ex.ClockCompare]]] = {}
+        self._query_compares: dict[int | None, dict[int, list[ex.ClockCompare]]] = {}
         # The alternatives of the goal and of the states to stay in.
         self.goal = guards.alternatives_of(sought.goal, due)
         self.inside = guards.alternatives_of(sought.inside, due)
@@ -92,7 +92,7 @@ class Plan:
         edges: list[int] = []
         for index, automaton in enumerate(self._network.automata):
             automata += [len(locations) // 8, len(automaton.locations), automaton.initial]
-            bounds = location_bounds(self._network, automaton, self._asked.get(index))
+            bounds = location_bounds(self._network, automaton, self._query_compares.get(index))
             pairs = zip(automaton.locations, automaton.leaving(), strict=True)
             for number, (place, leaving) in enumerate(pairs):
                 first, limit = len(self.edges), len(self._limits) // 3
@@ -144,7 +144,7 @@ class Plan:
                 # Prefer a location of an automaton that resets the clock: its edges drop the bound.
                 chosen = [p for p in places if compare.clock in self._sets[p[0]]] or places
                 automaton, place = chosen[0] if chosen else (None, 0)
-                self._asked.setdefault(automaton, {}).setdefault(place, []).append(compare)
+                self._query_compares.setdefault(automaton, {}).setdefault(place, []).append(compare)
         return [
             number
             for alternative in alternatives
@@ -153,7 +153,7 @@ class Plan:
 
     def _query_limits(self, sought: Sought, timer: int) -> list[int]:
         """The limits of the clocks that the query compares in every location."""
-        everywhere = self._asked.get(None, {}).get(0, [])
+        everywhere = self._query_compares.get(None, {}).get(0, [])
         bounds = ClockBounds()
         bounds.note(everywhere, self._network)
         rows = _limit_rows(bounds)

@@ -9,7 +9,7 @@ from itertools import chain
 from rvmon.diagnostics import Span
 from rvmon.models import model_error
 from rvmon.models import network as nta
-from rvmon.models.language.elaborate import asked_on
+from rvmon.models.language.elaborate import query_on
 from rvmon.models.network import expressions as ex
 from rvmon.models.network import guards
 from rvmon.models.runs import Ending, Run
@@ -54,11 +54,11 @@ def verify(
         ModelError: the query cannot be decided, the network cannot start, or one of its runs
             leaves the range of a variable.
     """
-    network, asked = asked_on(network, query) if isinstance(query, str) else (network, query)
+    network, resolved = query_on(network, query) if isinstance(query, str) else (network, query)
     check_start(network)
-    nta.check_clocks(network, (comparison.clock for comparison in compares_in(asked.formula)))
+    nta.check_clocks(network, (comparison.clock for comparison in compares_in(resolved.formula)))
     question = _Question(network, Meter(budget, watch), policy)
-    found = _search(question, asked)
+    found = _search(question, resolved)
     meter, run = question.meter, found.run
     holds = found.holds
     if holds is None:
@@ -66,14 +66,14 @@ def verify(
     remark = f"not decided: {meter.stopped}" if holds is None else _remark(run)
     if run is not None and found.chosen not in (None, policy):
         remark = f"no {policy} run was found: {meter.stopped}"
-    return Outcome(asked, holds, run, found.chosen, meter.statistics(), remark)
+    return Outcome(resolved, holds, run, found.chosen, meter.statistics(), remark)
 
 
 def compares_in(formula: nta.QueryFormula) -> Iterator[ex.ClockCompare]:
     """All comparisons of clocks in the formula of a query."""
     if isinstance(formula, nta.LeadsToFormula):
         return chain(guards.compares_of(formula.left), guards.compares_of(formula.right))
-    return iter(()) if isinstance(formula, nta.Asked) else guards.compares_of(formula)
+    return iter(()) if isinstance(formula, nta.ValueQuery) else guards.compares_of(formula)
 
 
 def _remark(run: Run | None) -> str:

@@ -160,11 +160,11 @@ class Network:
     def _samples(self, cells: Noted) -> list[Known]:
         """The leaves in sampled time; a value also covers the integers back to the last sample."""
         leaves: list[tuple[list[pw.Piece], list[pw.Piece]]] = [([], []) for _ in self.plan.leaves]
-        behind = self.start
+        next_start = self.start
         for position, letter in cells:
             for leaf, value in zip(leaves, letter, strict=True):
-                pw.append(leaf[not value], behind, position, 1 + 2 * position, 0)
-            behind = position + 1
+                pw.append(leaf[not value], next_start, position, 1 + 2 * position, 0)
+            next_start = position + 1
         return [*leaves]
 
     def _held(self, cells: Noted) -> list[Known]:

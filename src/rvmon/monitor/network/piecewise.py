@@ -339,18 +339,18 @@ class Positions:
         """Extend to integers that are not positions, for an operand that must hold throughout."""
         made: list[Piece] = []
         append(made, -FAR, self.first - 1, PAST, 0)
-        behind = self.first
+        next_start = self.first
         for first, last, at, slope in clip(pieces, self.first, self.last):
-            self._fill(made, behind, first - 1)
+            self._fill(made, next_start, first - 1)
             start = first
             for position in self.within(first, last):
                 append(made, start, position - 1, PAST, 0)
                 append(made, position, position, at + slope * position, 0)
                 start = position + 1
             append(made, start, last, *((PAST, 0) if self.sparse else (at, slope)))
-            behind = last + 1
-        self._fill(made, behind, self.last)
-        append(made, max(self.last + 1, behind), FAR, PAST, 0)
+            next_start = last + 1
+        self._fill(made, next_start, self.last)
+        append(made, max(self.last + 1, next_start), FAR, PAST, 0)
         return made
 
     def _fill(self, made: list[Piece], left: int, right: int) -> None:

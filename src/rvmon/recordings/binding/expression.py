@@ -197,8 +197,8 @@ def _applied(name: str, args: Sequence[expressions.Expression]) -> Term:
     terms = tuple(map(_term, args))
     if name in TURNS:
         if len(terms) != 1 or not isinstance(terms[0], Field):
-            said = f"`{name}` takes a field that is a quaternion: `{name}(pose.orientation)`"
-            raise RvmonError(said)
+            message = f"`{name}` takes a field that is a quaternion: `{name}(pose.orientation)`"
+            raise RvmonError(message)
         quaternion = terms[0].path
         return Applied(_TURNS[name], tuple(Field((*quaternion, one)) for one in _ROTATION), name)
     if name == "number":

@@ -62,8 +62,8 @@ def propose(spec: CheckedSpec, source: MessageFile) -> Proposal:
     found: dict[str, Found] = {}
     wanted = {name: wanted_of(name, type_, topics.values()) for name, type_ in types.items()}
     wanted |= {name: wanted_of(name, None, topics.values()) for name in spec.events}
-    for name, asked in wanted.items():
-        found[name] = fitting(asked, everything if name in types else events_of(topics))
+    for name, target in wanted.items():
+        found[name] = fitting(target, everything if name in types else events_of(topics))
     near = {
         name: of_same_dimension(wanted[name], everything)[:_MOST]
         for name in types

@@ -147,8 +147,8 @@ def _fits(wanted: Wanted, type_: Type, candidate: Candidate) -> bool:
     is_odd = candidate.meaning.sort is Sort.QUATERNION
     if is_odd or ("command" in wanted.words) != candidate.is_command:
         return False
-    asked = {word for word in wanted.words if word in MODIFIERS}
-    if not (modifiers_of(candidate) - {"command"} <= asked) or _is_of_another(wanted, candidate):
+    allowed = {word for word in wanted.words if word in MODIFIERS}
+    if not (modifiers_of(candidate) - {"command"} <= allowed) or _is_of_another(wanted, candidate):
         return False
     if type_.kind in (Kind.BOOL, Kind.LABEL):
         if not {*AXES, "xy"} & {*candidate.own} <= {*wanted.words}:
@@ -189,25 +189,25 @@ def _has_axis(wanted: Wanted, candidate: Candidate) -> bool:
 
 
 def _is_in_unit(wanted: Wanted, type_: Type, candidate: Candidate) -> bool:
-    said, there = dimensions_of(wanted.words), candidate.dimensions
+    named, there = dimensions_of(wanted.words), candidate.dimensions
     if type_.unit:
         dimension = parse_unit(type_.unit).dimension
-        if (said and dimension not in said) or candidate.meaning.sort is Sort.CODE:
+        if (named and dimension not in named) or candidate.meaning.sort is Sort.CODE:
             return False
         is_magnetic = dimension == parse_unit("T").dimension
         if candidate.meaning.is_scaled or (is_magnetic and candidate.unit is None):
             return False  # magnetic fields are often scaled by 1000, so the unit must be stated
         return dimension in there if there else candidate.meaning.sort is Sort.OPEN
-    return not (said and there) or not said.isdisjoint(there)
+    return not (named and there) or not named.isdisjoint(there)
 
 
 def _score(wanted: Wanted, candidate: Candidate) -> float:
     """How well the words of a name are found: 0 if one is missing, less for each foreign word."""
     total = 0.0
     ignorable = EMPTY | (_REQUESTS if wanted.type is None else frozenset())
-    asked = [word for word in wanted.words if word not in ignorable] or list(wanted.words)
-    foreign = [word for word in foreign_words(candidate) if not is_found(word, asked)]
-    for word in asked:
+    required = [word for word in wanted.words if word not in ignorable] or list(wanted.words)
+    foreign = [word for word in foreign_words(candidate) if not is_found(word, required)]
+    for word in required:
         weight = _weight(word, candidate)
         if not weight and word in WEAK and not foreign:
             weight = 0.3
@@ -225,7 +225,7 @@ def _score(wanted: Wanted, candidate: Candidate) -> float:
         better += 0.2  # a text is the label itself, a number only stands for it
     worse = sum(0.02 if word in candidate.own else 0.01 for word in foreign)
     worse += 0.06 * _is_of_another_quantity(candidate, foreign)
-    return total / len(asked) + better - worse
+    return total / len(required) + better - worse
 
 
 def _is_of_another_quantity(candidate: Candidate, foreign: Iterable[str]) -> bool:

@@ -112,8 +112,8 @@ def unit_in_comment(comment: str) -> str:
     >>> unit_in_comment("voltage in 0.1V (16.1V -> 161)"), unit_in_comment("Figure of merit")
     ('~V', '')
     """
-    said = [*_BRACKETS.findall(comment), *_BEHIND_IN.findall(comment), comment]
-    units = (spoken_unit(re.split(r"[,;]|\s-\s", one)[0]) for one in said)
+    candidates = [*_BRACKETS.findall(comment), *_BEHIND_IN.findall(comment), comment]
+    units = (spoken_unit(re.split(r"[,;]|\s-\s", one)[0]) for one in candidates)
     return next(filter(None, units), "")
 
 

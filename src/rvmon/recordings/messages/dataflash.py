@@ -78,8 +78,8 @@ def dataflash_messages(path: Path) -> ColumnMessages:
 @contextmanager
 def _silent() -> Iterator[None]:
     """Silence the library, which prints a line for each damaged byte, partly from C code."""
-    said = StringIO()
-    with redirect_stdout(said), redirect_stderr(said), open(os.devnull, "wb") as nowhere:
+    output = StringIO()
+    with redirect_stdout(output), redirect_stderr(output), open(os.devnull, "wb") as nowhere:
         shown = os.dup(2)
         os.dup2(nowhere.fileno(), 2)
         try:

@@ -103,13 +103,13 @@ def plain_type(type_name: str) -> str:
 
 def _stated(path: str, topic: Topic) -> Meaning:
     """The meaning that a recording states for a field, by a unit or by a comment."""
-    said = topic.units.get(path, "")
-    unit = "1" if said in ("1", "-") else spoken_unit(said)
+    stated = topic.units.get(path, "")
+    unit = "1" if stated in ("1", "-") else spoken_unit(stated)
     is_number = topic.leaves.get(path) in (Kind.REAL, Kind.INT)
-    if said and not unit:
+    if stated and not unit:
         return _UNKNOWN_UNIT
     comment = topic.comments.get(path)
-    if not said and comment and (is_number or is_vector(topic.messages.get(path, ""))):
+    if not stated and comment and (is_number or is_vector(topic.messages.get(path, ""))):
         unit = unit_in_comment(comment)
     is_prose = path not in topic.units
     return replace(_read(unit), is_prose=is_prose) if unit else UNKNOWN
@@ -238,9 +238,9 @@ def _expect(name: str, term: Term, declared: str, given: str, topic: Topic) -> N
         )
     if found.is_scaled or any(unit.factor == target.factor for unit in alike):
         return
-    says = f"and `unit` says [{given}]" if given else "and would be evaluated without conversion"
+    why = f"and `unit` says [{given}]" if given else "and would be evaluated without conversion"
     fix = f'write `unit = "{alike[0].symbol or 1}"` in a binding, and it is converted'
-    raise TraceError(f"{is_so}; {wanted}, {says}: {fix}")
+    raise TraceError(f"{is_so}; {wanted}, {why}: {fix}")
 
 
 def _such(target: Unit, topic: Topic) -> str:

@@ -198,8 +198,8 @@ class TelemetryMessages(Messages):
 
         def read(start: int) -> Mapping[str, Any]:
             is_first = data[start] == _MAGIC_1
-            begin = start + (6 if is_first else 10)
-            payload = data[begin : begin + data[start + 1]][:size].ljust(size, b"\0")
+            offset = start + (6 if is_first else 10)
+            payload = data[offset : offset + data[start + 1]][:size].ljust(size, b"\0")
             parts = unpack(payload)
             return {
                 field: parts[place].partition(b"\0")[0].decode("ascii", "replace")

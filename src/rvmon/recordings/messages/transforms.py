@@ -89,11 +89,11 @@ class WithTransforms(Messages):
                 yield name, t, content
             if not pairs or name not in SOURCES:
                 continue
-            heard = {_take(transform, frames) for transform in content.transforms}
+            received = {_take(transform, frames) for transform in content.transforms}
             for made, (outer, inner) in pairs.items():
                 way = _way(outer, inner, frames)
                 # A message about frames off the path changes nothing, so it is no update.
-                if way is not None and not heard.isdisjoint(way[1]):
+                if way is not None and not received.isdisjoint(way[1]):
                     shift, turn = way[0].shift, way[0].turn
                     yield (
                         made,

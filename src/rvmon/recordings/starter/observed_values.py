@@ -180,10 +180,10 @@ class Column(Struct):
         """The updates in rows of a signal, as the arguments of `take`."""
         values: NDArray[Any] = cells.values
         known = values == values
-        if cells.says is not None:
-            said = cells.says != NO_UPDATE
-            known = (known & (cells.says == YES))[said]
-            times, values = times[said], values[said]
+        if cells.states is not None:
+            given = cells.states != NO_UPDATE
+            known = (known & (cells.states == YES))[given]
+            times, values = times[given], values[given]
         if cells.labels is not None:
             numbers = self.course.labels
             places = [0] * len(cells.labels)

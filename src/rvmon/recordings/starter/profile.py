@@ -290,9 +290,9 @@ def _of_batch(batch: Batch, columns: Mapping[str, Column]) -> Recorded:
         name: columns[name].updates_in(times, signal) for name, signal in batch.signals.items()
     }
     for name, event in batch.events.items():
-        said = event.says != NO_UPDATE
-        values = np.where(event.with_payload, np.nan, event.says == YES)
-        found[name] = times[said], values[said], (event.says != UNKNOWN)[said]
+        given = event.states != NO_UPDATE
+        values = np.where(event.with_payload, np.nan, event.states == YES)
+        found[name] = times[given], values[given], (event.states != UNKNOWN)[given]
     return times, found
 
 

@@ -300,8 +300,8 @@ def _window(
             window = window or shape.longest
     since = mode == "since" or chance(rng, 30)
     if shape.instants and since and not (bounded or most):
-        begun = rv.passed(pick(rng, shape.instants), rv.Literal(0), strict=False)
-        operand = rv.Binary(rv.BinaryOp.AND, begun, operand)
+        passed_by = rv.passed(pick(rng, shape.instants), rv.Literal(0), strict=False)
+        operand = rv.Binary(rv.BinaryOp.AND, passed_by, operand)
     return rv.WindowValue(measured, operand, window, value, most, counted, chosen)
 
 
@@ -320,8 +320,8 @@ def _member(
     if isinstance(value, rv.Literal):
         return draw(rng, shape), ()
     if isinstance(value, rv.FieldValue) and measured is rv.Measured.SUM and chance(rng, 40):
-        beside = input_number(rng, replace(shape, events=False))
-        chosen = (rv.Compare(pick(rng, tuple(rv.CompareOp)), value, beside),)
+        other = input_number(rng, replace(shape, events=False))
+        chosen = (rv.Compare(pick(rng, tuple(rv.CompareOp)), value, other),)
     may_choose = measured in (rv.Measured.SUM, rv.Measured.INTEGRAL)
     if may_choose and chance(rng, 40):
         member = rv.Binary(rv.BinaryOp.AND, draw(rng, shape), member)

@@ -97,7 +97,7 @@ def random_spec(rng: Rng, profile: Profile) -> spec.CheckedSpec:
         profile = replace(profile, wide=100 if chance(rng, profile.wide) else 0)
     found = [draw(rng, profile, time, f"R{place}") for place in range(1, number + 1)]
     while profile.form and not any(
-        one for asked in found for one in windows_of(asked.trigger, asked.consequent)
+        one for rule in found for one in windows_of(rule.trigger, rule.consequent)
     ):
         found[-1] = _requirement(rng, profile, time, f"R{number}")
     return spec.CheckedSpec(

@@ -149,12 +149,12 @@ class Past:
 
     def window(self, formula: rv.WindowValue, i: int) -> Iterator[Member]:
         """The members of a window over a duration, the oldest first."""
-        for k in range(self.begin(formula, i), i + 1):
+        for k in range(self.start(formula, i), i + 1):
             if size := _size(self.letters, k, i, formula):
                 for value, sure in self.at(formula, k):
                     yield Member(value, sure, size)
 
-    def begin(self, formula: rv.WindowValue, i: int) -> int:
+    def start(self, formula: rv.WindowValue, i: int) -> int:
         """The first position of a window that starts at a captured instant; otherwise 0.
 
         Possible positions before that instant are not members.
@@ -294,8 +294,8 @@ def _of_sure(
 
 def _size(letters: Sequence[Letter], k: int, i: int, formula: rv.WindowValue) -> int:
     """The number of positions, or of ticks, that position `k` contributes to the window at `i`."""
-    begin = letters[k].instant
-    first = begin if formula.window is None else max(begin, letters[i].instant - formula.window)
+    start = letters[k].instant
+    first = start if formula.window is None else max(start, letters[i].instant - formula.window)
     if not formula.measured.of_time:
-        return int(begin == first)
+        return int(start == first)
     return max(0, letters[k + 1].instant - first) if k < i else 0

@@ -154,7 +154,7 @@ class View:
         stop = next(later, None)
         return range(k, len(self.trigger) if stop is None else stop), stop
 
-    def begin(self, position: int, positions: Sequence[int], stop: int | None) -> Start:
+    def start_at(self, position: int, positions: Sequence[int], stop: int | None) -> Start:
         """An attempt that captures its values at `position`."""
         captured = self._captures(position)
         lets = [capture.name for capture in self.requirement.captures]
@@ -273,17 +273,17 @@ def starts_upon(view: View) -> list[Start]:
         if last < view.first:
             return []
         sure = None if view.doubted else last
-        return [replace(view.begin(last, [last], None), sure=sure)]
+        return [replace(view.start_at(last, [last], None), sure=sure)]
     found = []
     edges = [view.edge(k) for k in range(len(view.trigger))]
     k = view.first
     while k < len(edges):
         stretch, stop = view.stretch(k)
         certain = [] if view.doubted else [j for j in stretch if edges[j] is law.Truth.TRUE]
-        found += [view.begin(j, [j], j + 1) for j in certain]
+        found += [view.start_at(j, [j], j + 1) for j in certain]
         hidden = [j for j in stretch if edges[j] is not law.Truth.FALSE and j not in certain]
         if hidden:
-            one = view.begin(hidden[0], hidden, stop)
+            one = view.start_at(hidden[0], hidden, stop)
             found.append(replace(one, sure=None))
         k = (stretch[-1] if stretch else k) + 1
     return found

@@ -104,7 +104,7 @@ def _episodes(view: View) -> list[Followed]:
     """The attempts of a `whenever`: after a failure its episode continues as a new attempt."""
     requirement, letters, readings = view.requirement, view.word.letters, view.readings()
     at_once = opened_at_once(requirement.consequent)
-    goes_on = not looks_back_at_future(requirement.consequent)
+    continues = not looks_back_at_future(requirement.consequent)
     favour = counts_in_favour(requirement)
     found: list[Followed] = []
     episode: Start | None = None
@@ -117,9 +117,9 @@ def _episodes(view: View) -> list[Followed]:
                 episode = None
             elif episode is None and k >= view.first:
                 positions, stop = view.stretch(k)
-                episode = view.begin(k, positions, stop)
+                episode = view.start_at(k, positions, stop)
                 found.append(Followed(episode))
-            elif episode is not None and goes_on and _has_failed(found[-1]):
+            elif episode is not None and continues and _has_failed(found[-1]):
                 truths = readings.of(episode.captured, favour=favour)
                 blurred = episode.blurred is not None and k >= episode.blurred
                 if not blurred and truths.truth(at_once, k) is not Truth.FALSE:

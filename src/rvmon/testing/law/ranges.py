@@ -204,10 +204,10 @@ class Margins(Operators[Margin]):
         self, operand: At[Margin], i: int, interval: rv.Interval, *, can_be_unborn: bool
     ) -> Margin:
         """See `Operators`."""
-        begun = OF_TRUTH[self._lasted(i, interval.high or 0)]
+        lasted = OF_TRUTH[self._lasted(i, interval.high or 0)]
         rest = ANY if self._reaches_out(i, interval) else TOP
         values = [operand(k) for k in self._window(i, interval)]
-        value = least([begun, rest, *(value.ranges[Truth.FALSE] for value in values)])
+        value = least([lasted, rest, *(value.ranges[Truth.FALSE] for value in values)])
         return _of_window(value, {value.state for value in values}, can_be_unborn)
 
     def _reaches_out(self, i: int, window: rv.Interval) -> bool:

@@ -50,8 +50,8 @@ def word_of(
     if not stamps:
         return law.Word((), None, reached)
     samples = without_ignored(spec, samples)
-    begun = samples[0].t if samples else None
-    first = min([*(outage.first for outage in outages), *_given(begun)])
+    first_sample = samples[0].t if samples else None
+    first = min([*(outage.first for outage in outages), *_given(first_sample)])
     # `advance` makes all ticks before it known, except in sampled time, where it adds no position.
     settled = [] if spec.time is TimeModel.SAMPLED else [t - 1 for t in advances]
     known_to = max([*stamps, *settled, *_given(end)])
@@ -68,7 +68,7 @@ def word_of(
     }
     letters: list[law.Letter] = []
     for index, instant in enumerate(instants):
-        if _is_sure(spec, instant, begun, outages):
+        if _is_sure(spec, instant, first_sample, outages):
             before = instants[index - 1] if index else None
             so_far = {name: history.by(before, instant) for name, history in histories.items()}
             since = letters[0].since if letters else instant
@@ -118,11 +118,11 @@ def _positions(
 
 
 def _is_sure(
-    spec: CheckedSpec, instant: int, begun: int | None, outages: Iterable[law.Outage]
+    spec: CheckedSpec, instant: int, first_sample: int | None, outages: Iterable[law.Outage]
 ) -> bool:
     """Whether an instant is certainly a position; if it may not be one, every formula is unknown.
 
-    `begun` is the instant of the first sample that was read.
+    `first_sample` is the instant of the first sample that was read.
 
     In an outage of sampled time no tick is certainly a position, even if a sample was read there:
     `next` and `previous` cannot know which position is the neighbour. In the other time models the
@@ -130,7 +130,7 @@ def _is_sure(
     """
     if spec.time is TimeModel.SAMPLED:
         return not any(outage.covers(instant) for outage in outages)
-    return begun is not None and begun <= instant
+    return first_sample is not None and first_sample <= instant
 
 
 def _blank(spec: CheckedSpec, instant: int) -> law.Letter:

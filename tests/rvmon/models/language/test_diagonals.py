@@ -10,7 +10,7 @@ from tests.tools.timed_generate import random_model
 from tests.tools.timed_regions import RegionGraph, TooManyRegionsError
 
 from rvmon.errors import ModelError
-from rvmon.models.language.elaborate import asked_on, signal_on
+from rvmon.models.language.elaborate import query_on, signal_on
 from rvmon.models.language.load import loads_network
 from rvmon.models.runs.exact_times import Configuration, Rules
 from rvmon.models.runs.statistics import sample
@@ -173,4 +173,4 @@ def test_figures_are_refused_where_edges_are_split():
     with pytest.raises(ModelError, match="keep track of their difference"):
         signal_on(network, "far", "x - y > 3")
     with pytest.raises(ModelError, match="probabilities are undefined"):
-        sample(network, asked_on(network, "Pr[<=9](<> A.c)")[1])
+        sample(network, query_on(network, "Pr[<=9](<> A.c)")[1])

@@ -9,7 +9,7 @@ from tests.tools.each import each
 from tests.tools.findings import findings_of
 
 from rvmon.errors import ModelError
-from rvmon.models.language.elaborate import asked_on
+from rvmon.models.language.elaborate import query_on
 from rvmon.models.language.load import load_network, loads_network
 from rvmon.models.language.parse import STARTS
 from rvmon.models.search.verify import verify
@@ -292,8 +292,8 @@ def test_operators_bind_as_those_of_uppaal(text, bound):
     """Words as signs: UTAP's grammar has `imply` beside `or`, from the left, and `and` above."""
     network = loads_network("bool p, q, r, s int[0,3] v automaton A { location l start l }")
     assert (
-        asked_on(network, f"E<> ({text})")[1].formula
-        == asked_on(network, f"E<> ({bound})")[1].formula
+        query_on(network, f"E<> ({text})")[1].formula
+        == query_on(network, f"E<> ({bound})")[1].formula
     )
 
 

@@ -5,7 +5,7 @@ from tests.tools.each import each
 from tests.tools.findings import findings_of
 
 from rvmon.errors import ModelError
-from rvmon.models.language.elaborate import asked_on
+from rvmon.models.language.elaborate import query_on
 from rvmon.models.language.load import loads_network
 from rvmon.models.search.verify import verify
 
@@ -56,7 +56,7 @@ def test_what_is_not_supported_is_called_by_its_name(parts, message):
 def test_foreign_queries_are_called_by_their_name(formula, message):
     """As a query of its own it is refused; in a file it is left out with a warning."""
     with pytest.raises(ModelError, match=message):
-        asked_on(loads_network(model()), formula)[1]
+        query_on(loads_network(model()), formula)[1]
     text = formula.replace("<", "&lt;").replace(">", "&gt;")
     queries = f"<query><formula>{text}</formula></query>"
     network = loads_network(model(queries=queries))

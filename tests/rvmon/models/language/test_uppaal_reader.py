@@ -8,7 +8,7 @@ from tests.tools.each import each
 from tests.tools.findings import findings_of
 
 from rvmon.errors import ModelError
-from rvmon.models.language.elaborate import asked_on
+from rvmon.models.language.elaborate import query_on
 from rvmon.models.language.load import load_network, loads_network
 from rvmon.models.runs.statistics import sample
 from rvmon.models.search.verify import verify
@@ -215,7 +215,7 @@ def test_a_branch_point_is_a_choice_with_weights(weights):
     assert [edge.weight for edge in network.automata[0].edges] == [0.25, 0.75]
     assert verify(network, "E<> T.p1 and v == 4 and x == 2").holds
     assert not verify(network, "E<> (T.p0 and v != 3) or T.p2 or (not T.a and x < 2)").holds
-    share = sample(network, asked_on(network, "Pr[<=100; 2000](<> T.p1)")[1]).value
+    share = sample(network, query_on(network, "Pr[<=100; 2000](<> T.p1)")[1]).value
     assert 0.7 < share < 0.8
 
 

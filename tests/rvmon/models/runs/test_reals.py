@@ -8,7 +8,7 @@ from tests.tools.findings import codes_of
 import rvmon
 from rvmon.errors import ModelError
 from rvmon.models.conform import conform
-from rvmon.models.language.elaborate import asked_on
+from rvmon.models.language.elaborate import query_on
 from rvmon.models.language.load import loads_network
 from rvmon.models.requirement_check import observe
 from rvmon.models.runs.statistics import sample, trajectories
@@ -44,7 +44,7 @@ automaton Room {
 
 def values(terms, text=MODEL, horizon=20):
     network = loads_network(text)
-    (run,) = trajectories(network, asked_on(network, f"simulate [<={horizon}; 1] {{{terms}}}")[1])
+    (run,) = trajectories(network, query_on(network, f"simulate [<={horizon}; 1] {{{terms}}}")[1])
     return run.times, run.values
 
 
@@ -61,9 +61,9 @@ def test_a_run_computes_as_doubles_do():
 
 def test_figures_of_such_runs():
     network = loads_network(MODEL)
-    assert sample(network, asked_on(network, "Pr[<=30; 20](<> last >= 19.5)")[1]).value == 1
-    assert sample(network, asked_on(network, "Pr[<=30; 20](<> last > 19.5 + 1)")[1]).value == 0
-    mean = sample(network, asked_on(network, "E[<=6; 20](max: last / 2)")[1])
+    assert sample(network, query_on(network, "Pr[<=30; 20](<> last >= 19.5)")[1]).value == 1
+    assert sample(network, query_on(network, "Pr[<=30; 20](<> last > 19.5 + 1)")[1]).value == 0
+    mean = sample(network, query_on(network, "E[<=6; 20](max: last / 2)")[1])
     assert mean.value == 9.5
 
 
@@ -170,7 +170,7 @@ def test_nothing_is_proved_of_them():
         lambda: verify(network, network.queries[0] if network.queries else "E<> Room.hot"),
         lambda: list(observe(network, spec.checked)),
         lambda: build_suite(network, Criterion.EDGES),
-        lambda: list(extremes(network, asked_on(network, "sup: rounds")[1])),
+        lambda: list(extremes(network, query_on(network, "sup: rounds")[1])),
         lambda: conform(network, [], observed=frozenset(), end=1, tolerance=0),
     ]
     for search in searches:
@@ -180,15 +180,15 @@ def test_nothing_is_proved_of_them():
     plain = loads_network("clock x int[0,1] n automaton A { location l start l }")
     for query in ("E<> n > 0.5", "E<> x > 0.5", "sup{n < 0.5}: n"):
         with pytest.raises(ModelError, match="proofs work on integers only"):
-            asked_on(plain, query)[1]
+            query_on(plain, query)[1]
 
 
 def test_a_model_with_fractions_is_read_back():
     network = loads_network(MODEL)
     again = loads_network(uppaal_xml(network))
     query = "simulate [<=20; 2] {last, warm, rounds}"
-    assert trajectories(again, asked_on(again, query)[1]) == trajectories(
-        network, asked_on(network, query)[1]
+    assert trajectories(again, query_on(again, query)[1]) == trajectories(
+        network, query_on(network, query)[1]
     )
 
 

@@ -9,7 +9,7 @@ from tests.tools.each import each
 from rvmon.cli import main
 from rvmon.confidence import interval
 from rvmon.errors import ModelError
-from rvmon.models.language.elaborate import asked_on
+from rvmon.models.language.elaborate import query_on
 from rvmon.models.language.load import loads_network
 from rvmon.models.runs.statistics import MARGIN, sample, trajectories
 from rvmon.models.search.extremes import extremes
@@ -32,7 +32,7 @@ automaton A {
 
 def figure(text, query, seed=1):
     network = loads_network(text)
-    return sample(network, asked_on(network, query)[1], seed=seed)
+    return sample(network, query_on(network, query)[1], seed=seed)
 
 
 def sampled(query, seed=1):
@@ -199,10 +199,10 @@ def test_runs_are_shown_as_they_go_on(tmp_path, says):
 def test_both_ways_to_write_how_many_runs(text):
     """Before the brackets, as UPPAAL had it once, and in them; one if nothing is said."""
     network = loads_network(COIN)
-    assert len(trajectories(network, asked_on(network, text)[1])) == 3
-    assert len(trajectories(network, asked_on(network, "simulate[<=2]{n}")[1])) == 1
+    assert len(trajectories(network, query_on(network, text)[1])) == 3
+    assert len(trajectories(network, query_on(network, "simulate[<=2]{n}")[1])) == 1
     with pytest.raises(ModelError, match="does not simulate runs"):
-        trajectories(network, asked_on(network, "E<> n > 0")[1])
+        trajectories(network, query_on(network, "E<> n > 0")[1])
 
 
 @pytest.mark.parametrize(
@@ -259,7 +259,7 @@ def test_what_stop_watches_reach_is_not_decided():
         with pytest.raises(ModelError, match="not decidable"):
             verify(network, query)
     with pytest.raises(ModelError, match="not decidable"):
-        list(extremes(network, asked_on(network, "sup: cost")[1]))
+        list(extremes(network, query_on(network, "sup: cost")[1]))
     guarded = loads_network(STOPPED.replace("when x >= 10", "when x >= 10 and used > 3"))
     with pytest.raises(ModelError, match="2 places"):
         verify(guarded, "E<> A.c")
@@ -275,7 +275,7 @@ def test_rates_that_have_no_meaning_are_told(invariant, message):
     text += f"automaton B {{ location l invariant {invariant} start l }}"
     network = loads_network(text.replace("used' == 0", "x <= 10"))
     with pytest.raises(ModelError, match=message):
-        sample(network, asked_on(network, "Pr[<=10](<> left)")[1])
+        sample(network, query_on(network, "Pr[<=10](<> left)")[1])
 
 
 def test_rates_come_back_from_uppaal():

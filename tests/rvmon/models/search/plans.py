@@ -4,9 +4,9 @@ from collections.abc import Iterable, Iterator
 
 from tests.tools.timed_generate import random_model
 
-from rvmon.models.language.elaborate import asked_on
+from rvmon.models.language.elaborate import query_on
 from rvmon.models.language.load import loads_network
-from rvmon.models.network import Asked, LeadsToFormula, Network
+from rvmon.models.network import LeadsToFormula, Network, ValueQuery
 from rvmon.models.network.derived import Watcher
 from rvmon.models.network.expressions import (
     FALSE,
@@ -66,6 +66,6 @@ def _watched(network: Network) -> Network:
 
 
 def _formula(network: Network, text: str) -> Expression:
-    formula = asked_on(network, text)[1].formula
-    assert not isinstance(formula, LeadsToFormula | Asked)
+    formula = query_on(network, text)[1].formula
+    assert not isinstance(formula, LeadsToFormula | ValueQuery)
     return formula

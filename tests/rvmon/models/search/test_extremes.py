@@ -9,7 +9,7 @@ from tests.tools.timed_regions import RegionGraph, TooManyRegionsError, truth_of
 
 from rvmon.cli import main
 from rvmon.errors import ModelError
-from rvmon.models.language.elaborate import asked_on
+from rvmon.models.language.elaborate import query_on
 from rvmon.models.language.load import loads_network
 from rvmon.models.network.expressions import ClockCompare, ClockOp, Constant
 from rvmon.models.runs.exact_times import Rules
@@ -31,7 +31,7 @@ automaton A {
 
 def asked(text, query, **options):
     network = loads_network(text)
-    return list(extremes(network, asked_on(network, query)[1], **options))
+    return list(extremes(network, query_on(network, query)[1], **options))
 
 
 @pytest.mark.parametrize(
@@ -84,7 +84,7 @@ def test_values_are_those_of_the_regions(first):
             continue
         where = " and ".join(f"{clock.name} <= 7" for clock in network.clocks)
         terms = ", ".join(one.name for one in (network.variables[0], *network.clocks))
-        query = asked_on(network, f"bounds{{{where}}}: {terms}")[1]
+        query = query_on(network, f"bounds{{{where}}}: {terms}")[1]
         inside = [now for now in states if all(truth_of(one)(now) for one in fence)]
         values = [
             [now.values[0] for now in inside],

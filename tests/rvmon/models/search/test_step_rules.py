@@ -4,7 +4,7 @@ import pytest
 from tests.tools.each import each
 
 from rvmon.errors import ModelError
-from rvmon.models.language.elaborate import asked_on
+from rvmon.models.language.elaborate import query_on
 from rvmon.models.language.load import loads_network
 from rvmon.models.runs import Window
 from rvmon.models.runs.statistics import sample
@@ -134,7 +134,7 @@ def test_a_step_is_taken_by_its_rule(rule):
 
 def test_a_run_that_is_drawn_leaves_a_committed_location():
     network = loads_network(TWO.format(kind="committed"))
-    leaves = asked_on(network, "Pr[<=9; 20](<> A.b)")[1]
+    leaves = query_on(network, "Pr[<=9; 20](<> A.b)")[1]
     assert sample(network, leaves).value == 1
 
 
@@ -155,7 +155,7 @@ def test_a_step_waits_for_those_of_higher_priority():
     assert verify(network, "E<> A.b and x > 1").holds
     assert verify(network, "E<> A.d").holds
     # From 2 on `high` can be taken, up to 1 the edge without a channel: `low` between only.
-    between = asked_on(network, "Pr[<=9; 20]([] not (A.b and x <= 1))")[1]
+    between = query_on(network, "Pr[<=9; 20]([] not (A.b and x <= 1))")[1]
     assert sample(network, between).value == 1
 
 

@@ -9,7 +9,7 @@ Source: Alur, Courcoubetis, Dill, Model-Checking in Dense Real-Time, 1993, secti
 import networkx as nx
 from tests.tools.timed_regions import Region, RegionGraph, Steps, truth_of
 
-from rvmon.models.network import Asked, LeadsToFormula, Network, Query
+from rvmon.models.network import LeadsToFormula, Network, Query, ValueQuery
 from rvmon.models.network.expressions import (
     BinaryOp,
     BinaryOperation,
@@ -30,7 +30,7 @@ def holds_at_start(
 ) -> bool:
     """Whether a query holds, whatever operators of CTL it has."""
     formula = query.formula
-    assert not isinstance(formula, Asked)
+    assert not isinstance(formula, ValueQuery)
     if isinstance(formula, LeadsToFormula):
         answered = PathFormula(PathOp.EVENTUALLY, formula.right, formula.bound)
         implied = BinaryOperation(BinaryOp.IMPLY, formula.left, answered)
