@@ -1,4 +1,4 @@
-"""What tests of several commands begin with: a door that is to open when somebody knocks."""
+"""A specification shared by tests of several commands: a door has to open after a knock."""
 
 import pytest
 
@@ -19,7 +19,7 @@ LABELLED = DOOR.replace("requirement D1", "requirement D0") + (
 
 @pytest.fixture
 def door(tmp_path, monkeypatch):
-    """The current folder, with the specification."""
+    """The current folder, with `door.rv`."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "door.rv").write_text(DOOR)
     return tmp_path
@@ -27,7 +27,7 @@ def door(tmp_path, monkeypatch):
 
 @pytest.fixture
 def put(tmp_path, monkeypatch):
-    """Write a file into what is the current folder from then on, and give its name."""
+    """Make an empty folder the current one; a call writes a file there and returns its name."""
     monkeypatch.chdir(tmp_path)
 
     def written(name, text):

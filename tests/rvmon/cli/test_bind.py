@@ -1,4 +1,4 @@
-"""`rvmon init --for`, and `--binding` of the other commands."""
+"""`rvmon init --for` proposes a binding, and `--binding` of the other commands uses it."""
 
 import math
 
@@ -50,16 +50,16 @@ def words(tmp_path):
 
 
 def bound(words, says):
-    """What is proposed, with the labels that only a person knows."""
+    """The proposed binding, completed with the labels that only a person knows."""
     told = says(1, "init", words[1], "--for", words[0])
     assert "`scan_state` is a number" in told.err
-    open_ = '# labels = { 0 = "idle" }  # which number stands for which: it holds 1'
-    assert open_ in told.out
-    return told.out.replace(open_, 'labels = { 0 = "idle", 1 = "busy" }')
+    open_labels = '# labels = { 0 = "idle" }  # which number stands for which: it holds 1'
+    assert open_labels in told.out
+    return told.out.replace(open_labels, 'labels = { 0 = "idle", 1 = "busy" }')
 
 
 @pytest.mark.slow
-def test_what_is_proposed_runs(words, tmp_path, says):
+def test_a_proposed_binding_works_in_all_commands(words, tmp_path, says):
     proposed = bound(words, says)
     for line in (
         'value = "hypot(twist.twist.linear.x, twist.twist.linear.y)"  # always 1',
@@ -78,7 +78,7 @@ def test_what_is_proposed_runs(words, tmp_path, says):
     assert "--binding" in page
 
 
-def test_what_finds_nothing_is_told(words, tmp_path, says):
+def test_a_name_without_a_source_is_left_open(words, tmp_path, says):
     (tmp_path / "base.rv").write_text(SPEC.replace("event  go", "event  go, zapped"))
     told = says(1, "init", words[1], "--for", words[0])
     lines = ("# Nothing was found for `zapped` (event):", "# [bind.zapped]")
@@ -86,14 +86,13 @@ def test_what_finds_nothing_is_told(words, tmp_path, says):
     assert "the source of `zapped` is left open" in told.err
 
 
-def test_check_says_what_a_binding_leaves_out(words, tmp_path, capsys):
-    path = tmp_path / "base.toml"
-    path.write_text('[bind.go]\ntopic = "/go"\n')
-    assert main(["check", words[0], "--binding", str(path)]) == 0
-    assert "does not bind speed, heading, scan_state, mode, ready, pick" in capsys.readouterr().out
+def test_check_reports_names_that_a_binding_omits(words, put, says):
+    binding = put("base.toml", '[bind.go]\ntopic = "/go"\n')
+    told = says(0, "check", words[0], "--binding", binding).out
+    assert "does not bind speed, heading, scan_state, mode, ready, pick" in told
 
 
-def test_a_starter_of_parquet_runs_on_it(tmp_path, monkeypatch):
+def test_a_starter_for_parquet_runs_on_the_file(tmp_path, monkeypatch):
     arrow = pytest.importorskip("pyarrow")
     monkeypatch.chdir(tmp_path)
     table = {"t": [0.0, 1.0, 2.0], "speed": [1.0, None, 2.5], "mode": ["idle", "busy", "idle"]}
@@ -106,7 +105,7 @@ def test_a_starter_of_parquet_runs_on_it(tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
-def test_a_run_goes_on_from_bags_that_were_judged(words, tmp_path, monkeypatch, capsys, says):
+def test_a_resumed_run_skips_evaluated_bags(words, tmp_path, monkeypatch, capsys, says):
     runs = tmp_path / "runs"
     runs.mkdir()
     for number in range(3):
@@ -123,13 +122,11 @@ def test_a_run_goes_on_from_bags_that_were_judged(words, tmp_path, monkeypatch, 
     assert "started with another specification" in says(2, *command).err
 
 
-def test_two_names_on_one_field_are_told(words, tmp_path, capsys):
+def test_two_names_on_one_field_are_reported(words, put, says):
     two = SPEC.replace("signal heading ", "signal robot_speed : real [m/s]\nsignal heading ")
-    (tmp_path / "base.rv").write_text(two)
-    main(["init", words[1], "--for", words[0]])
-    assert "`speed` and `robot_speed` are fed by the same field" in capsys.readouterr().err
+    told = says(1, "init", words[1], "--for", put("base.rv", two)).err
+    assert "`speed` and `robot_speed` are fed by the same field" in told
     field = 'topic = "/base/odom"\nvalue = "twist.twist.linear.x"\nunit = "m/s"\n'
-    path = tmp_path / "two.toml"
-    path.write_text(f"[bind.speed]\n{field}[bind.robot_speed]\n{field}")
-    assert main(["check", words[0], "--binding", str(path)]) == 0
-    assert "feeds speed and robot_speed with the same field" in capsys.readouterr().out
+    put("two.toml", f"[bind.speed]\n{field}[bind.robot_speed]\n{field}")
+    told = says(0, "check", "base.rv", "--binding", "two.toml").out
+    assert "feeds speed and robot_speed with the same field" in told

@@ -1,10 +1,12 @@
-"""`rvmon clip` as a person uses it."""
+"""`rvmon clip`: which rows a piece has, and what is reported."""
 
 import os
+import shlex
 import threading
 from pathlib import Path
 
 import pytest
+from tests.tools.each import each
 
 import rvmon
 from rvmon.cli import main
@@ -44,70 +46,76 @@ def base(tmp_path, monkeypatch):
     return tmp_path
 
 
-def clip(*words):
-    return main(["clip", "base.rv", "a.csv", *words])
+@pytest.fixture
+def clip(base, says):
+    """Cut b.csv out of a.csv with an expected exit code, and return what is printed."""
+
+    def run(code, words):
+        return says(code, "clip", "base.rv", "a.csv", *shlex.split(words), "-o", "b.csv")
+
+    return run
 
 
-def test_rows_are_copied_as_they_stand_and_values_are_carried(base, capsys):
-    assert clip("R1#1", "--before", "1s", "--after", "1 s", "-o", "b.csv") == 0
-    rows = (base / "b.csv").read_text().splitlines()
-    assert rows == [ROWS[0], "14,0.7,False,,".lower(), *ROWS[4:7]]
-    assert capsys.readouterr().out.splitlines() == [
+UNITS = ["t [ms],speed [m/s],ready,go", "0,0.5,1,", "9000,,0,", "12000,,1,"]
+UNENDED = ["t,go,ready,speed", "0,,0,0.5", "5,1,1,0.6", "6,,,0.7"]
+
+
+@each(
+    ("rows", "words", "piece"),
+    [
+        # Values are carried to the start of the piece, into the units of their columns.
+        (ROWS, "R1#1 --before 1s --after '1 s'", [ROWS[0], "14,0.7,false,,", *ROWS[4:7]]),
+        (UNITS, "--from 4 --to 9", [UNITS[0], "4000,0.5,true,", UNITS[2]]),
+        # Line breaks in quotes stay, and so does the lack of one after the last line.
+        (ROWS, "--from 11 --to 16", [ROWS[0], "11,0.9,false,,", *ROWS[3:5]]),
+        (UNENDED, "--from 5", [UNENDED[0], *UNENDED[2:]]),
+        # An attempt of `always` is cut around its failure, however long ago it started.
+        (ROWS, "R2 --before 0 --after 0", [ROWS[0], ROWS[6]]),
+        # A row after the deadline is taken along, as only a later row decides it.
+        (ROWS, "R1#1 --after 100ms", [ROWS[0], "5,0.5,false,,", *ROWS[2:6]]),
+    ],
+)
+def test_a_piece_holds_the_rows_of_its_stretch(base, clip, rows, words, piece):
+    (base / "a.csv").write_text("\n".join(rows))
+    clip(0, words)
+    end = "" if piece[-1] == rows[-1] else "\n"
+    assert (base / "b.csv").read_text() == "\n".join(piece) + end
+
+
+def test_the_piece_its_carried_values_and_its_verdict_are_reported(base, clip):
+    assert clip(0, "R1#1 --before 1s --after '1 s'").out.splitlines() == [
         "b.csv: 3 entries of a.csv, 15 s to 17 s",
         "carried to its start: `speed`, `ready`",
         "R1#1 is R1#1 in b.csv: F, decided at 16.000000001 s, as in a.csv",
     ]
 
 
-def test_quoted_ends_of_lines_stay(base):
-    assert clip("--from", "11", "--to", "16", "-o", "b.csv") == 0
-    assert '12,0.7,,,"two\nlines"\n' in (base / "b.csv").read_text()
-
-
-def test_a_last_line_without_its_end_has_none_in_the_piece(base):
-    """What it said last is not known there, either."""
-    (base / "a.csv").write_text("t,go,ready,speed\n0,,0,0.5\n5,1,1,0.6\n6,,,0.7")
-    assert clip("R2", "-o", "b.csv") == 0
-    assert (base / "b.csv").read_text().endswith("\n6,,,0.7")
+def test_a_last_line_without_an_end_stays_open_in_the_piece(base, clip):
+    (base / "a.csv").write_text("\n".join(UNENDED))
+    clip(0, "R2")
     assert rvmon.load("base.rv").evaluate("b.csv").verdicts["R2"] == "I"
 
 
-def test_an_episode_is_cut_around_what_failed(base, capsys):
-    """It may have begun hours before; in the piece it begins with it."""
-    assert clip("R2", "--before", "0", "--after", "0", "-o", "b.csv") == 0
-    assert (base / "b.csv").read_text().splitlines() == [ROWS[0], ROWS[6]]
-    assert "R2#1 is R2#1 in b.csv: F, decided at 17 s" in capsys.readouterr().out
-
-
-def test_what_a_past_operator_remembers_needs_more_before(base, capsys):
-    assert clip("R3#1", "--before", "2s", "-o", "b.csv") == 1
-    told = capsys.readouterr().err
+def test_a_changed_verdict_names_the_option_that_keeps_it(clip):
+    told = clip(1, "R3#1 --before 2s").err
     assert "R3#1 is P in a.csv, but not in b.csv, where R3 is F" in told
     assert "a longer --before" in told
-    assert clip("R3#1", "--before", "5s", "-o", "b.csv") == 0
+    clip(0, "R3#1 --before 5s")
+    told = clip(1, "R1#1 --to 16.2").err
+    assert "it was decided at 16.000000001 s: a later --to" in told
 
 
-def test_what_ends_too_early_is_said(base, capsys):
-    """Time decides a deadline only if there is a row behind it: by itself, that is taken along."""
-    assert clip("R1#1", "--to", "16.2", "-o", "b.csv") == 1
-    assert "it was decided at 16.000000001 s: a later --to" in capsys.readouterr().err
-    assert clip("R1#1", "--after", "100ms", "-o", "b.csv") == 0
-    assert (base / "b.csv").read_text().splitlines()[-1] == ROWS[5]
-
-
-def test_a_recording_that_breaks_off_can_be_cut(base, capsys):
+def test_a_recording_that_breaks_off_can_be_clipped(base, clip):
     (base / "a.csv").write_text("\n".join([*ROWS, "broken"]))
-    assert clip("R1#1", "--after", "2s", "-o", "b.csv") == 0
-    assert "attempts decided before that count" in capsys.readouterr().err
+    assert "attempts decided before that count" in clip(0, "R1#1 --after 2s").err
 
 
-@pytest.mark.parametrize("name", ["b.csv", "b.jsonl", "b.parquet"])
-def test_what_goes_back_behind_the_end_is_no_part_of_a_piece(base, name):
-    """The good begin of a recording whose clock jumped can be saved."""
+@pytest.mark.parametrize("form", ["csv", "jsonl", "parquet"])
+def test_rows_that_go_back_in_time_after_the_end_are_left_out(base, form):
     times = [0, 1, 2, 3, 1, 2, 7]
-    if name == "b.csv":
+    if form == "csv":
         (base / "in.csv").write_text("t,speed\n" + "".join(f"{t},1\n" for t in times))
-    elif name == "b.jsonl":
+    elif form == "jsonl":
         (base / "in.jsonl").write_text("".join(f'{{"t": {t}, "speed": 1}}\n' for t in times))
     else:
         pyarrow = pytest.importorskip("pyarrow")
@@ -115,45 +123,35 @@ def test_what_goes_back_behind_the_end_is_no_part_of_a_piece(base, name):
 
         table = pyarrow.table({"t": times, "speed": [1.0] * len(times)})
         parquet.write_table(table, base / "in.parquet")
-    words = ["clip", "base.rv", name.replace("b", "in", 1), "--from", "1", "--to", "2", "-o", name]
+    words = ["clip", "base.rv", f"in.{form}", "--from", "1", "--to", "2", "-o", f"out.{form}"]
     assert main(words) == 0
-    names = rvmon.load("base.rv").evaluate(name, allow_missing=True)
-    assert names.end == 2 * 10**9
+    report = rvmon.load("base.rv").evaluate(f"out.{form}", allow_missing=True)
+    assert report.end == 2 * 10**9
 
 
-def test_what_is_broken_behind_the_end_of_a_piece_does_not_matter(base):
+def test_faults_after_the_end_of_a_piece_do_not_matter(base):
     good = [f'{{"t": {t}, "speed": 1}}\n' for t in range(4)]
     (base / "a.jsonl").write_text("".join(good) + '{"t": "x"}\n')
     assert main(["clip", "base.rv", "a.jsonl", "--from", "1", "--to", "2", "-o", "b.jsonl"]) == 0
     assert (base / "b.jsonl").read_text() == "".join(good[1:3])
 
 
-def test_lines_whose_names_are_mapped_can_be_cut(base):
+def test_lines_with_mapped_names_can_be_clipped(base):
     lines = [f'{{"t": {t}, "v": 1}}\n' for t in range(3)]
     (base / "a.jsonl").write_text("".join(lines))
     words = ["--map", "speed=v", "--from", "1", "-o", "b.jsonl"]
     assert main(["clip", "base.rv", "a.jsonl", *words]) == 0
-    assert (base / "b.jsonl").read_text() == '{"t": 1, "v": 1}\n' + lines[2]
+    assert (base / "b.jsonl").read_text() == "".join(lines[1:])
 
 
-def test_a_value_is_carried_into_a_column_with_its_unit(base):
-    """Units stand behind names, that of the time as well."""
-    (base / "a.csv").write_text("t [ms],speed [m/s],ready,go\n0,0.5,1,\n9000,,0,\n12000,,1,\n")
-    assert clip("--from", "4", "--to", "9", "-o", "b.csv") == 0
-    assert (base / "b.csv").read_text().splitlines()[1:] == ["4000,0.5,true,", "9000,,0,"]
-
-
-def test_what_is_no_text_is_said(base, capsys, monkeypatch):
-    """Also where it is found while rows are copied."""
+def test_bytes_that_are_no_text_are_reported_while_rows_are_copied(base, clip, monkeypatch):
     monkeypatch.setattr(places, "BLOCK", 64)
     rows = "".join(f"{t},1,1,\n" for t in range(100)) + "100,1,1,\xe9\n"
     (base / "a.csv").write_bytes(f"t,speed,ready,note\n{rows}".encode("latin1"))
-    assert clip("--to", "5", "-o", "b.csv") == 2
-    assert "error: a.csv: not UTF-8 text" in capsys.readouterr().err
+    assert "error: a.csv: not UTF-8 text" in clip(2, "--to 5").err
 
 
-def test_columns_with_dictionaries_are_cut_with_their_stamps(base):
-    """Of them the rows of a group come together, of others more."""
+def test_dictionary_columns_keep_their_stamps(base):
     pyarrow = pytest.importorskip("pyarrow")
     from pyarrow import parquet
 
@@ -168,11 +166,11 @@ def test_columns_with_dictionaries_are_cut_with_their_stamps(base):
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes")
-def test_a_pipe_is_refused_and_shown_without_its_values(base, capsys):
-    """It is gone when it was read; to wait for another one would take for ever."""
+def test_a_pipe_is_refused_by_clip_and_reported_by_run(base, says):
+    """A pipe is empty once read, and waiting for another writer would never end."""
     os.mkfifo("a.jsonl")
-    assert main(["clip", "base.rv", "a.jsonl", "R2", "-o", "b.jsonl"]) == 2
-    assert "a.jsonl can be read once only: save the recording first" in capsys.readouterr().err
+    told = says(2, "clip", "base.rv", "a.jsonl", "R2", "-o", "b.jsonl").err
+    assert "a.jsonl can be read once only: save the recording first" in told
     line = b'{"t": 0, "speed": 2}\n{"t": 1, "speed": 2}\n'
     writer = threading.Thread(target=Path("a.jsonl").write_bytes, args=(line,))
     writer.start()
@@ -181,17 +179,17 @@ def test_a_pipe_is_refused_and_shown_without_its_values(base, capsys):
     assert "R2-1" in next(base.glob("page*/a.html")).read_text()
 
 
-def test_late_rows_are_found(base, capsys):
+def test_late_rows_are_in_the_piece(base, clip):
     (base / "base.rv").write_text(SPEC.replace("spec base\n", "spec base\nmax delay 5 s\n"))
     (base / "a.csv").write_text(
         "t,speed,ready,go\n0,0.5,false,\n9,0.4,,\n8,0.3,,\n12,,,\n10,,,1\n20,,,\n"
     )
-    assert clip("R1#1", "--before", "0.5s", "--after", "2s", "-o", "b.csv") == 0
+    clip(0, "R1#1 --before 0.5s --after 2s")
     assert (base / "b.csv").read_text() == "t,speed,ready,go\n9.5,0.4,false,\n12,,,\n10,,,1\n"
 
 
 def test_a_bag_is_not_replaced(base, says):
-    """It is a folder, which may hold other things."""
+    """A bag is a folder, which may hold other files."""
     pytest.importorskip("rosbags")
     from tests.tools.bags import START, write_ros2
 

@@ -1,4 +1,4 @@
-"""`rvmon cover` as a person uses it."""
+"""`rvmon cover`: what it prints, writes and compares, and its exit codes."""
 
 import json
 from pathlib import Path
@@ -23,14 +23,22 @@ def door(tmp_path, monkeypatch):
 
 
 def shown(capsys, *words):
-    """What is printed to standard output, without the columns' padding."""
+    """The exit code, and the lines of standard output without the padding of columns."""
     code = main(["cover", *words])
     lines = capsys.readouterr().out.splitlines()
     return code, [" ".join(line.split()) for line in lines]
 
 
+def covered(folder, *groups):
+    """The path of a database with groups and without hits."""
+    path = str(folder / "a.cov")
+    with Database.open(path) as database:
+        database.declare(model_of(groups))
+    return path
+
+
 def test_a_group_without_goals_is_no_row(tmp_path, capsys):
-    """Neither the terminal nor the page calls that 100 %; requirements stand as in the file."""
+    """Neither the terminal nor the page calls that 100 %; requirements keep their order."""
     path = tmp_path / "base.cov"
     groups = [group_of("near", Subject.COVERPOINT, [Item("yes")])]
     groups.append(group_of("pairs", Subject.TRANSITIONS, []))
@@ -52,8 +60,8 @@ def test_a_group_without_goals_is_no_row(tmp_path, capsys):
 
 
 @pytest.mark.slow
-def test_what_cannot_be_hit_stands_apart(door, capsys):
-    """It leaves the share and the holes, and has a list with its reason; a hit of it is wrong."""
+def test_items_that_cannot_be_hit_are_listed_with_their_reason(door, capsys):
+    """They do not count as holes or in the share; a hit of one is an error."""
     with Database.open(door) as database:
         database.exclude("near", "reach", "a fence is there")
         database.exclude("near", "far", "a fence is there")
@@ -76,7 +84,7 @@ def test_what_cannot_be_hit_stands_apart(door, capsys):
 
 
 @pytest.mark.slow
-def test_ucis_is_as_its_schema_has_it(door, tmp_path, says):
+def test_ucis_output_is_valid_by_its_schema(door, tmp_path, says):
     ucis = pytest.importorskip("ucis")
     etree = pytest.importorskip("lxml.etree")
     with Database.open(door) as database:
@@ -86,29 +94,25 @@ def test_ucis_is_as_its_schema_has_it(door, tmp_path, says):
     schema = Path(ucis.__file__).parent / "xml" / "schema" / "ucis.xsd"
     document = etree.parse(path)
     etree.XMLSchema(etree.parse(schema)).assertValid(document)
-    bins = {one.get("name"): one for one in document.iter("coverpointBin", "crossBin")}
-    counts = {name: one.find(".//contents").get("coverageCount") for name, one in bins.items()}
+    bins = {item.get("name"): item for item in document.iter("coverpointBin", "crossBin")}
+    counts = {name: item.find(".//contents").get("coverageCount") for name, item in bins.items()}
     assert (counts["yes"], counts["no × touch"], counts["far"]) == ("3", "1", "0")
     assert [one.text for one in bins["no × far"].iter("index")] == ["1", "2"]
     assert bins["no × touch"].get("type") == "illegal"
-    assert (bins["reach"].get("type"), bins["reach"].find("userAttr").text) == (
-        "ignore",
-        "a fence is there",
-    )
-    passed = {
-        one.get("logicalName"): one.get("testStatus") for one in document.iter("historyNodes")
-    }
-    assert passed["wild-2"] == "false"
+    assert bins["reach"].get("type") == "ignore"
+    assert bins["reach"].find("userAttr").text == "a fence is there"
+    (status,) = document.xpath("//*[@logicalName='wild-2']/@testStatus")
+    assert status == "false"
     says(2, "cover", door, "--ucis", tmp_path / "no" / "x.xml")
 
 
 def test_a_cross_of_three_has_nested_rows(tmp_path, capsys, monkeypatch):
     axes = {"x": ["a", "b"], "y": ["c", "d"], "z": ["e", "f"]}
     names = [combination([x, y, z]) for x in "ab" for y in "cd" for z in "ef"]
-    cross = Group("xyz", Subject.CROSS, {name: Item(name) for name in names}, axes=axes)
-    path = str(tmp_path / "a.cov")
+    path = covered(
+        tmp_path, Group("xyz", Subject.CROSS, {name: Item(name) for name in names}, axes=axes)
+    )
     with Database.open(path) as database:
-        database.declare(model_of([cross]))
         database.record(TestRecord("t"), hits_of(("xyz", names[3]), count=12345))
     _, lines = shown(capsys, path, "--bins")
     grid = lines.index("x y e f")
@@ -118,20 +122,17 @@ def test_a_cross_of_three_has_nested_rows(tmp_path, capsys, monkeypatch):
     assert "x y e f" not in lines
 
 
-def test_a_cross_that_nobody_could_look_at_is_a_list(tmp_path, capsys):
-    """Its axes span more cells than any specification has; those that are items are listed."""
+def test_the_items_of_a_huge_cross_are_a_list(tmp_path, capsys):
+    """The grid of these axes would have 10^12 cells."""
     axes = {axis: [str(number) for number in range(100)] for axis in "uvwxyz"}
     name = combination(["7"] * 6)
-    cross = Group("far", Subject.CROSS, {name: Item(name)}, axes=axes)
-    path = str(tmp_path / "a.cov")
-    with Database.open(path) as database:
-        database.declare(model_of([cross]))
+    path = covered(tmp_path, Group("far", Subject.CROSS, {name: Item(name)}, axes=axes))
     code, lines = shown(capsys, path, "--bins", "--report", str(tmp_path / "a.html"))
     assert code == 0
     assert f"{name} 0" in lines
 
 
-def test_json_has_all(door, says):
+def test_json_has_groups_illegal_hits_tests_and_an_order(door, says):
     document = json.loads(says(0, "cover", door, "--format", "json").out)
     assert document["share"] == pytest.approx(0.4583, abs=1e-4)
     gaze = document["groups"][0]
@@ -139,16 +140,13 @@ def test_json_has_all(door, says):
     assert gaze["bins"][0]["first"] == {"test": 0, "name": "calm-1", "at": 1_000_000_000}
     assert document["illegal"] == [["situation", "no × touch"]]
     assert document["tests"][3]["added"] == [["gaze", "no"]]
-    assert [one["name"] for one in document["shortest_known_order"]] == [
-        "calm-2",
-        "wild-2",
-        "wild-1",
-    ]
+    order = [test["name"] for test in document["shortest_known_order"]]
+    assert order == ["calm-2", "wild-2", "wild-1"]
     assert document["compared"] is None
 
 
 @pytest.mark.slow
-def test_exit_codes(door, says):
+def test_a_missed_share_an_illegal_hit_and_a_loss_fail(door, says):
     hits = hits_of(("near", "touch"), ("situation", "no × far"))
     with Database.open(door) as database:
         database.record(TestRecord("calm-1", "week 2"), hits)
@@ -181,10 +179,8 @@ def test_campaigns_are_compared(door, capsys, says):
     assert "did you mean `week 1`?" in says(2, "cover", door, "--campaign", "weak 1").err
 
 
-def test_a_conflict_leaves_what_is_there(door, tmp_path, says):
-    other = str(tmp_path / "other.cov")
-    with Database.open(other) as database:
-        database.declare(model_of([group_of("gaze", Subject.COVERPOINT, [Item("yes", goal=9)])]))
+def test_a_conflict_of_goals_changes_no_database(door, tmp_path, says):
+    other = covered(tmp_path, group_of("gaze", Subject.COVERPOINT, [Item("yes", goal=9)]))
     told = says(2, "cover", door, other, "--merge", tmp_path / "out.cov").err
     assert "item `yes` of group `gaze` is a goal of 9 hits here, a goal of 1 hit in" in told
     assert not (tmp_path / "out.cov").exists()
@@ -194,16 +190,15 @@ def test_a_conflict_leaves_what_is_there(door, tmp_path, says):
 
 @pytest.mark.slow
 def test_names_steer_no_terminal(tmp_path, says):
-    path = str(tmp_path / "a.cov")
     names = list(hostile_names(40))
     axes = {names[0]: names, names[1]: names[:2]}
     crossed = [combination([one, two]) for one in names for two in names[:2]]
-    groups = [
+    path = covered(
+        tmp_path,
         group_of(names[5], Subject.COVERPOINT, [Item(name) for name in names]),
         Group(names[6], Subject.CROSS, {name: Item(name) for name in crossed}, axes=axes),
-    ]
+    )
     with Database.open(path) as database:
-        database.declare(model_of(groups))
         for name in names:
             verdicts = {name: "F"}
             record = TestRecord(name, name, name, error=name, ending="hung", verdicts=verdicts)
@@ -214,7 +209,7 @@ def test_names_steer_no_terminal(tmp_path, says):
 
 
 def test_an_empty_database_is_shown_and_reaches_no_share(tmp_path, capsys, says):
-    """A gate does not pass because nobody said what is to be covered."""
+    """A gate does not pass because nothing was declared to be covered."""
     path = str(tmp_path / "a.cov")
     Database.open(path).close()
     code, lines = shown(capsys, path, "--holes", "--bins", "--tests")

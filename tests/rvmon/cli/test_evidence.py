@@ -1,4 +1,4 @@
-"""`rvmon run --evidence` and `rvmon evidence`: what is kept, and what is found to differ."""
+"""`rvmon run --evidence` writes an archive; `rvmon evidence` verifies it and finds changes."""
 
 import csv
 import hashlib
@@ -32,7 +32,7 @@ coverpoint fast = speed {slow: [0, 5], illegal reckless: (5, 100]}
 
 
 def forged(entries):
-    """The entries with a pass in the place of a failure, and a matrix that follows from them."""
+    """Verdicts with a pass in place of a failure, and the matrix that follows from them."""
     verdicts = entries["verdicts.csv"].replace(b"R1#1,1,F", b"R1#1,1,P")
     about = msgspec.json.decode(entries["evidence.json"], type=About)
     spec = {"": rvmon.load("specs/base.rv", const={"T": "2 s"})}
@@ -62,7 +62,7 @@ def run(*words, out="e.zip"):
 
 
 def verify(capsys, *words):
-    """The exit code of verifying, and what it says."""
+    """The exit code of verifying, and its output."""
     capsys.readouterr()
     code = main(["evidence", "e.zip", *words])
     told = capsys.readouterr()
@@ -70,20 +70,20 @@ def verify(capsys, *words):
 
 
 def rewritten(path, change):
-    """Change entries, and make an archive of them whose checksums are right."""
+    """Change entries of an archive, and write it again with correct checksums."""
     entries = unpack(path)
     change(entries)
     with open(path, "wb") as file:
         file.write(pack(entries))
 
 
-def test_the_same_run_gives_the_same_bytes(base):
+def test_the_same_run_writes_the_same_bytes(base):
     assert run(*TRACES) == 2
     assert run(*TRACES, "--jobs", "2", "--out", "v.csv", out="f.zip") == 2
     assert (base / "e.zip").read_bytes() == (base / "f.zip").read_bytes()
 
 
-def test_it_holds_what_verdicts_follow_from(base, capsys):
+def test_an_archive_holds_everything_that_verdicts_follow_from(base, capsys):
     assert run(*TRACES, "--coverage", "c.db") == 2
     entries = unpack("e.zip")
     assert entries["spec/common.rv"] == COMMON.encode()
@@ -113,7 +113,7 @@ def test_it_holds_what_verdicts_follow_from(base, capsys):
     assert (code, told.splitlines()[-1]) == (0, "It holds.")
 
 
-def test_a_bag_with_a_binding_is_judged_again(base, capsys):
+def test_a_bag_with_a_binding_is_verified(base, capsys):
     pytest.importorskip("rosbags")
     from tests.tools.bags import DEFINITIONS, START, write_ros2
 
@@ -135,7 +135,7 @@ def test_a_bag_with_a_binding_is_judged_again(base, capsys):
     assert verify(capsys)[0] == 1
 
 
-def test_recordings_that_are_others_or_gone_are_told(base, capsys):
+def test_changed_and_missing_recordings_are_reported(base, capsys):
     run(*TRACES)
     kept = (base / "b.csv").read_bytes()
     (base / "b.csv").write_bytes(kept + b"12000,1,\n")
@@ -150,8 +150,8 @@ def test_recordings_that_are_others_or_gone_are_told(base, capsys):
     assert verify(capsys)[0] == 0
 
 
-def test_a_sample_follows_from_its_seed(base, capsys):
-    """The same seed takes the same recordings; which, is seen by what differs."""
+def test_a_seed_selects_the_sampled_recordings(base, capsys):
+    """Only a sample with a.csv reveals the forgery."""
     run(*TRACES)
     rewritten("e.zip", lambda entries: entries.update(forged(entries)))
     told = {seed: verify(capsys, "--sample", "1", "--seed", str(seed)) for seed in range(4)}
@@ -161,26 +161,26 @@ def test_a_sample_follows_from_its_seed(base, capsys):
 
 
 def loosened(_):
-    """Requirements that the verdicts are none of."""
+    """A specification other than the one that was evaluated."""
     return {"spec/specs/base.rv": SPEC.replace("speed < 9", "speed < 1").encode()}
 
 
 def of_others(entries):
-    """Verdicts on a recording that was not judged."""
+    """Verdicts on a recording that was not evaluated."""
     body = entries["verdicts.csv"]
     row = body.splitlines()[1].removeprefix(b"a.csv")
     return {"verdicts.csv": body + b"b.csv" + row}
 
 
 def about(**changed):
-    """Another description of what was done."""
+    """Another description of the run."""
     return lambda entries: {
         "evidence.json": json.dumps(json.loads(entries["evidence.json"]) | changed).encode()
     }
 
 
 def longer(name):
-    """An entry with a byte more."""
+    """An entry with one more byte."""
     return lambda entries: {name: entries[name] + b" "}
 
 
@@ -191,7 +191,7 @@ CHANGED = {
     "the matrix": (longer("matrix.csv"), 1, "does not follow"),
     "its page": (longer("matrix.html"), 1, "does not follow"),
     "verdicts of others": (of_others, 1, "on others: b.csv"),
-    # What another rvmon made is not wholly checked.
+    # Archives of another rvmon are checked only in part.
     "the law": (about(law=1), 2, "this rvmon has law"),
     "the programs": (about(programs={}), 2, "another rvmon"),
     "no description": (lambda _: {"evidence.json": b"{}"}, 2, NONE),
@@ -204,8 +204,7 @@ CHANGED = {
 
 
 @pytest.mark.parametrize("what", CHANGED)
-def test_what_was_changed_is_found(base, capsys, what):
-    """Though the checksums are right for it, and for other verdicts the matrix."""
+def test_a_change_is_found_though_checksums_are_correct(base, capsys, what):
     change, code, told = CHANGED[what]
     run("a.csv")
     rewritten("e.zip", lambda entries: entries.update(change(entries)))
@@ -214,8 +213,7 @@ def test_what_was_changed_is_found(base, capsys, what):
     assert not (base.parent / "x").exists()
 
 
-def test_what_changes_while_it_is_judged_is_told(base, capsys, monkeypatch):
-    """Evidence of something else than was judged is never written."""
+def test_no_evidence_is_written_if_a_recording_changes_during_the_run(base, capsys, monkeypatch):
     from rvmon.cli import evaluation
 
     judge = evaluation.judge

@@ -1,4 +1,4 @@
-"""`rvmon explain` as a person uses it."""
+"""`rvmon explain`: requirements in words, with their shortest runs."""
 
 import pytest
 from tests.tools.each import each
@@ -27,13 +27,6 @@ requirement D6
 """
 
 
-@pytest.fixture
-def door(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "door.rv").write_text(SPEC)
-    return tmp_path
-
-
 @pytest.mark.slow
 @each(
     ("body", "said"),
@@ -48,7 +41,7 @@ def door(tmp_path, monkeypatch):
         ("always bit(mode, 3)", "bit(mode, 3) is true"),
     ],
 )
-def test_what_is_measured_is_said(put, says, body, said):
+def test_measures_and_truth_values_are_put_into_words(put, says, body, said):
     body = body.format("upon knock then eventually")
     text = f"{SPEC}event rung(loud: bool)\nsignal mode : int\nrequirement W\n {body}\n"
     text = says(0, "explain", put("s.rv", text), "W").out
@@ -57,25 +50,23 @@ def test_what_is_measured_is_said(put, says, body, said):
 
 
 @pytest.mark.slow
-def test_all_requirements_within_80_columns(door, says):
-    text = says(0, "explain", "door.rv").out
+def test_all_requirements_fit_80_columns(put, says):
+    text = says(0, "explain", put("door.rv", SPEC)).out
     assert all(len(line) <= 80 for line in text.splitlines()), text
     assert text.count("The shortest run on which it") == 6
 
 
 @pytest.mark.slow
-def test_what_cannot_be_is_said(door, says):
-    text = says(0, "explain", "door.rv", "D3").out
+def test_impossible_and_undecided_outcomes_are_reported(put, says):
+    text = says(0, "explain", put("door.rv", SPEC), "D3").out
     assert "fails: never, whatever comes" in text
     assert "is not triggered: never, every run triggers it" in text
     assert "nothing can trigger it" in says(0, "explain", "door.rv", "D5").out
-    assert (
-        "not decided"
-        in says(0, "explain", "door.rv", "D1", "--runs", "2", "--max-memory", "2000").out
-    )
+    few = ["--runs", "2", "--max-memory", "2000"]
+    assert "not decided" in says(0, "explain", "door.rv", "D1", *few).out
 
 
-def test_a_requirement_differs_not_from_its_twin(put, says):
+def test_no_run_tells_two_equal_requirements_apart(put, says):
     twin = "\n upon a\n then immediately a\n"
     path = put("twins.rv", f"event a\nrequirement R1{twin}requirement R2{twin}")
     assert "No run was found" in says(0, "explain", path, "R1", "R2").out

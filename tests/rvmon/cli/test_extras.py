@@ -1,4 +1,4 @@
-"""What is not installed is named with the line that installs it."""
+"""A missing package is reported with the command that installs it."""
 
 import re
 import shutil
@@ -34,7 +34,7 @@ LACKING = [
 
 
 @pytest.mark.parametrize(("package", "words", "extra"), LACKING)
-def test_a_missing_extra_names_the_line_that_installs_it(
+def test_a_missing_package_is_reported_with_the_command_that_installs_it(
     tmp_path, monkeypatch, capsys, package, words, extra
 ):
     monkeypatch.chdir(tmp_path)
@@ -42,11 +42,11 @@ def test_a_missing_extra_names_the_line_that_installs_it(
         shutil.copy(ROOT / "examples" / name, tmp_path)
     for name in ("v.parquet", "base.parquet", "base.bag", "base.csv.zst", "test.json"):
         (tmp_path / name).write_bytes(b"(\xb5/\xfd" if name.endswith("zst") else b"PAR1")
-    for name in [one for one in sys.modules if one.partition(".")[0] == package]:
+    for name in [name for name in sys.modules if name.partition(".")[0] == package]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, package, None)
     monkeypatch.setitem(sys.modules, "compression", None)
-    monkeypatch.delitem(_registry, "s3", raising=False)  # where another test asked for it
+    monkeypatch.delitem(_registry, "s3", raising=False)  # from another test
     bag_readers.cache_clear()
     program = handover.cli.main if extra == "handover" else main
     assert program(words.split()) == 2
@@ -58,6 +58,6 @@ def test_a_missing_extra_names_the_line_that_installs_it(
 
 def test_every_package_is_in_its_extra():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
-    brought = project["optional-dependencies"]
+    extras = project["optional-dependencies"]
     for package, extra in EXTRAS.items():
-        assert package in {re.split(r"[<>=\[]", one)[0] for one in brought[extra]}
+        assert package in {re.split(r"[<>=\[]", line)[0] for line in extras[extra]}

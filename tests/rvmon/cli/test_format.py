@@ -6,7 +6,7 @@ UGLY = "requirement R G(a->F b)\n"
 CANONICAL = "requirement R\n  always (a -> eventually b)\n"
 
 
-def test_a_file_is_rewritten_once_and_not_by_a_check(tmp_path, put, says):
+def test_a_file_is_rewritten_once_and_never_by_check(tmp_path, put, says):
     path = tmp_path / put("a.rv", UGLY)
     for words, code, told, text in (
         (["--check"], 1, f"would change: {path}\n", UGLY),
@@ -17,7 +17,7 @@ def test_a_file_is_rewritten_once_and_not_by_a_check(tmp_path, put, says):
         assert (says(code, "format", *words, path).out, path.read_text()) == (told, text)
 
 
-def test_file_that_cannot_be_read(tmp_path, put, says):
+def test_other_files_are_formatted_although_one_is_wrong(tmp_path, put, says):
     put("a.rv", "requirement R upon")
     put("b.rv", UGLY)
     assert "RV001" in says(2, "format", "a.rv", "b.rv", "missing.rv").err
@@ -25,6 +25,6 @@ def test_file_that_cannot_be_read(tmp_path, put, says):
     assert texts == ["requirement R upon", CANONICAL]
 
 
-def test_standard_input(monkeypatch, says):
+def test_standard_input_is_formatted_to_standard_output(monkeypatch, says):
     monkeypatch.setattr("sys.stdin", io.StringIO(UGLY))
     assert says(0, "format", "-").out == CANONICAL

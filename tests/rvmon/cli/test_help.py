@@ -1,4 +1,4 @@
-"""Help: the commands, and examples that run."""
+"""Help lists the commands, and its examples run."""
 
 import glob
 import re
@@ -13,7 +13,7 @@ from rvmon.cli import COMMANDS, _parser, main
 
 ROOT = Path(__file__).parents[3]
 PARSED = {"lsp", "watch"}
-"""Commands whose examples need a bag, a compiler or a pipe."""
+"""Commands whose examples are parsed only: they need an editor or a stream."""
 HANDOVER = ("run", "demo", "close", "replay", "shrink", "mutate", "evidence")
 
 
@@ -26,8 +26,7 @@ def examples(program, words, capsys):
     return [one for line in lines for one in re.split(r" && | \| | > .+? && ", line.strip())]
 
 
-def test_the_commands_fit_a_screen(says):
-    """Of 24 lines and 80 columns, each with its purpose, but for what editors start."""
+def test_all_commands_but_that_for_editors_fit_a_screen_of_24_lines(says):
     lines = says(0, "--help").out.splitlines()
     assert len(lines) <= 24
     assert max(map(len, lines)) <= 80

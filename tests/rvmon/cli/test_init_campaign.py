@@ -1,4 +1,4 @@
-"""`rvmon init --campaign`: a campaign that runs, closes and is mutated as it was written."""
+"""`rvmon init --campaign` writes a campaign whose commands work without an edit."""
 
 import json
 import subprocess
@@ -23,14 +23,14 @@ def written(tmp_path_factory):
     return folder
 
 
-def test_it_passes_its_strict_gate_and_finds_its_planted_fault(written):
+def test_the_campaign_passes_its_strict_gate_and_finds_its_planted_fault(written):
     done = run(written, "run", "--tests", "20", "--jobs", "1", "--strict")
     assert (done.returncode, done.stderr) == (0, "")
     assert "2 of 2 directed tests ended as they should, 1 of them with a fault" in done.stdout
     assert main(["format", "--check", str(written / "lift.rv")]) == 0
 
 
-def test_it_closes(written):
+def test_the_campaign_closes_its_coverage(written):
     done = run(written, "close", "--jobs", "1", "--format", "json", "--out", "closed")
     assert done.returncode == 0, done.stdout + done.stderr
     found = json.loads(done.stdout)
@@ -40,7 +40,7 @@ def test_it_closes(written):
     assert all(0 <= call["floor"] <= 4 for test in tests for call in test["calls"])
 
 
-def test_it_is_mutated(written):
+def test_the_code_of_the_campaign_is_mutated(written):
     words = ("mutate", "--of", "code", "--tests", "4", "--strategy", "anyone", "--jobs", "1")
     done = run(written, *words, "--only", "next_state", "--format", "json")
     assert done.returncode == 0, done.stderr
@@ -49,6 +49,4 @@ def test_it_is_mutated(written):
 
 def test_nothing_is_overwritten(written, says):
     assert "exists already" in says(2, "init", "--campaign", written).err
-    assert main(["init", "--campaign", str(written), "--force"]) == 0
-    assert main(["init"]) == 2
-    assert main(["init", "some.csv", "--campaign", "there"]) == 2
+    says(0, "init", "--campaign", written, "--force")

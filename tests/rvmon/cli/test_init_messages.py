@@ -1,4 +1,4 @@
-"""`rvmon init` with recordings of messages: it writes what they can support, and that runs."""
+"""`rvmon init` with recordings of messages: the specification passes on its recording."""
 
 import pytest
 from tests.tools.bags import START, write_json_mcap, write_ros1
@@ -23,7 +23,7 @@ TYPES = {
 
 
 def arm(count=40):
-    """An arm that is driven about, with a battery that is present all the time."""
+    """Messages of a moving arm whose battery is always present."""
     for tick in range(count):
         t, x = START + tick * 10**8, tick / 7
         names = ["shoulder_joint", "elbow_joint"] if tick % 2 else ["finger_joint"]
@@ -38,7 +38,7 @@ def arm(count=40):
 
 
 def written(tmp_path, bag, says):
-    """The starter, with spaces as one; it runs without a warning and with no F."""
+    """The specification on one line, after a check and a run without warnings and failures."""
     made = tmp_path / "made.rv"
     assert main(["init", str(bag), "-o", str(made), "--force"]) == 0
     says(0, "check", made, "--strict")
@@ -47,8 +47,7 @@ def written(tmp_path, bag, says):
     return " ".join(made.read_text().split())
 
 
-def test_joints_go_by_their_names_and_what_is_always_true_is_no_event(tmp_path, says):
-    """With units where messages say them; also where a message has only some of the joints."""
+def test_signals_have_names_of_joints_and_units_and_a_constant_is_no_event(tmp_path, says):
     text = written(tmp_path, write_ros1(tmp_path / "a.bag", [*arm()], TYPES), says)
     text = text.replace(" :", ":")
     for joint in ("shoulder_joint", "elbow_joint", "finger_joint"):
@@ -63,21 +62,20 @@ def test_joints_go_by_their_names_and_what_is_always_true_is_no_event(tmp_path, 
     assert "signal note: {idle, busy}" in text
 
 
-def test_a_constant_that_comes_seldom_is_no_event_where_others_come_with_it(tmp_path, says):
-    """As what is valid in a message of many fields; alone it says that something happened."""
-    sent = [one for one in arm() if one[0] != "/battery" and one[0] != "/present"]
+def test_a_rare_constant_is_an_event_only_if_alone_in_its_message(tmp_path, says):
+    sent = [message for message in arm() if message[0] not in ("/battery", "/present")]
     for tick in (3, 4, 5, 6, 7, 8, 37):
         at = START + tick * 10**8
         sent.append(("/battery", at + 20, {"present": True, "voltage": 24.0}))
         sent.append(("/present", at + 30, {"data": True}))
-    sent.sort(key=lambda one: one[1])
+    sent.sort(key=lambda message: message[1])
     text = written(tmp_path, write_ros1(tmp_path / "a.bag", sent, TYPES), says)
     assert "event battery.present" not in text
     assert "battery.present: bool" in text.replace(" :", ":")
     assert "event present" in text
 
 
-def test_a_joint_whose_name_is_no_word_is_said_to_be_left_out(tmp_path, says):
+def test_a_joint_whose_name_is_no_word_is_left_out_with_the_reason(tmp_path, says):
     sent = [("/joints", START, {"name": ["a", "wrist.1"], "position": [0.5, 0.25]})]
     text = written(tmp_path, write_ros1(tmp_path / "a.bag", sent, TYPES), says)
     assert "joints.position[wrist.1], " in text
@@ -85,7 +83,7 @@ def test_a_joint_whose_name_is_no_word_is_said_to_be_left_out(tmp_path, says):
 
 
 @pytest.mark.parametrize("plugin", ["sqlite3", "mcap"])
-def test_topics_on_which_nothing_was_said_are_left_out(tmp_path, says, plugin):
+def test_topics_without_messages_are_left_out(tmp_path, says, plugin):
     from rosbags.rosbag2 import StoragePlugin, Writer
     from rosbags.typesys import Stores, get_typestore
 
@@ -107,15 +105,10 @@ def test_topics_on_which_nothing_was_said_are_left_out(tmp_path, says, plugin):
     assert "no value in the recording" in text
 
 
-def test_a_recording_of_nothing_is_told(tmp_path, says):
-    write_json_mcap(tmp_path / "a.mcap", [])
-    assert "a.mcap" in says(2, "init", tmp_path / "a.mcap", "-o", "-").err
-
-
 @pytest.mark.parametrize(
     ("sent", "told"),
     [
-        # What falls silent before another topic does is judged to the end of that one.
+        # /speed falls silent early, yet it is evaluated to the end of the recording.
         (
             [
                 *(("/speed", START + n * 10**7, {"data": n / 8}) for n in range(20)),
@@ -127,13 +120,15 @@ def test_a_recording_of_nothing_is_told(tmp_path, says):
     ],
     ids=["silence", "texts"],
 )
-def test_silence_is_judged_and_texts_alone_are_events(tmp_path, says, sent, told):
+def test_a_topic_that_falls_silent_is_a_signal_and_free_text_an_event(tmp_path, says, sent, told):
     assert told in written(tmp_path, write_json_mcap(tmp_path / "a.mcap", sent), says)
 
 
-def test_a_topic_that_cannot_be_read_is_left_out_with_the_reason(tmp_path, says):
+def test_empty_recordings_are_refused_and_unreadable_topics_left_out(tmp_path, says):
     from mcap.writer import Writer
 
+    write_json_mcap(tmp_path / "empty.mcap", [])
+    assert "empty.mcap" in says(2, "init", tmp_path / "empty.mcap", "-o", "-").err
     with (tmp_path / "a.mcap").open("wb") as file:
         writer = Writer(file)
         writer.start()

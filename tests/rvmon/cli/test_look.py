@@ -1,4 +1,4 @@
-"""`rvmon look`: every name of a recording over time, as text and as a page."""
+"""`rvmon look` shows every name of a recording over time, as text and as a page."""
 
 import math
 import re
@@ -7,9 +7,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from tests.tools.each import each
 from tests.tools.logs import write_ulog
-
-from rvmon.cli import main
 
 SPEC = """
 spec base
@@ -52,110 +51,94 @@ def test_each_name_has_its_kind_rate_gap_and_values(recording, says):
     assert "  " in drawn.strip()
 
 
-def test_with_a_specification_what_feeds_its_requirements_comes_first(recording, says):
-    words = [str(recording / "base.csv"), str(recording / "base.rv")]
-    told = says(0, "look", *words).out
+def test_with_a_specification_names_stand_below_their_requirements(recording, says):
+    told = says(0, "look", recording / "base.csv", recording / "base.rv").out
     assert told.index("R1  Slow") < told.index("real [m/s]") < told.index("R2  Stops")
     assert "left out: never: nothing feeds it" in told
-
-
-def test_reports_that_a_declared_event_does_not_occur_are_not_counted(recording, says):
-    told = says(0, "look", recording / "base.csv", recording / "base.rv").out
     [line] = [line for line in told.splitlines() if line.split()[:1] == ["stop"]]
-    assert "2 times" in line
+    assert "2 times" in line  # a cell of 0 is no occurrence
 
 
-def test_a_page_holds_each_name_and_nothing_of_it_is_markup(recording, capsys):
-    path = recording / "base.csv"
+def test_a_page_shows_each_name_and_escapes_markup(recording, says):
+    path, page = recording / "base.csv", recording / "look.html"
     path.write_text(path.read_text().replace("mode", "<b>mode"))
-    assert main(["look", str(path), "-o", str(recording / "look.html")]) == 0
-    text = (recording / "look.html").read_text()
-    assert "wrote" in "".join(capsys.readouterr())
+    assert "wrote" in "".join(says(0, "look", path, "-o", page))
+    text = page.read_text()
     assert "&lt;b&gt;mode" in text
     assert "<b>mode" not in text
-    assert text.count('class="course"') >= 3  # `speed` in two parts, `armed`
+    assert text.count('class="course"') >= 3  # `speed` is drawn in two parts
     assert text.count('class="event"') == 2
 
 
-def test_what_a_log_lost_is_told_and_shaded(tmp_path, says):
+def test_lost_data_of_a_log_is_reported_and_shaded(tmp_path, says):
     pytest.importorskip("pyulog")
     rows = [(t, t / 1e6, 0) for t in range(1_000_000, 1_300_000, 1_000)]
     path = write_ulog(tmp_path / "a.ulg", rows, drops=[(100, 30)])
     assert "lost: everything from 0.1 s (stamp 1.1 s) on:" in says(0, "look", path).out
-    assert main(["look", str(path), "-o", str(tmp_path / "a.html")]) == 0
+    says(0, "look", path, "-o", tmp_path / "a.html")
     page = (tmp_path / "a.html").read_text()
     assert 'class="lost"' in page
-    assert '<code title="drive.speed">speed</code>' in page  # it stands under its topic
+    assert '<code title="drive.speed">speed</code>' in page  # below the heading of its topic
 
 
-def test_what_falls_silent_is_drawn_up_to_there(put, says):
+def test_a_name_is_drawn_only_until_it_falls_silent(put, says):
     rows = [f"{k / 100},{k % 7}," for k in range(100)] + [f"{1 + k},,{k}" for k in range(200)]
     put("a.csv", "\n".join(["t,early,late", *rows, ""]))
     early, late = says(0, "look", "a.csv").out.splitlines()[1:3]
-    assert [sum(one in "▁▂▃▄▅▆▇█" for one in line) for line in (early, late)] == [1, 20]
-    assert main(["look", "a.csv", "-o", "a.html"]) == 0
+    assert [sum(sign in "▁▂▃▄▅▆▇█" for sign in line) for line in (early, late)] == [1, 20]
+    says(0, "look", "a.csv", "-o", "a.html")
     text = Path("a.html").read_text()
     marks = re.findall(r'<span style="left:([\d.]+)%">([^<]*)<', text)
     assert marks == [("0.00", "0 s"), ("25.00", "50 s"), ("50.00", "100 s"), ("75.00", "150 s")]
-    ends = [
-        max(map(float, re.findall(r"([\d.]+) [\d.]+", d))) for d in re.findall(r' d="M(.*?)Z', text)
-    ]
-    wide = float(re.search(r'viewBox="0 0 ([\d.]+) ', text)[1])
-    assert [round(end / wide, 1) for end in ends] == [0.0, 1.0]
+    curves = re.findall(r' d="M(.*?)Z', text)
+    ends = [max(map(float, re.findall(r"([\d.]+) [\d.]+", curve))) for curve in curves]
+    width = float(re.search(r'viewBox="0 0 ([\d.]+) ', text)[1])
+    assert [round(end / width, 1) for end in ends] == [0.0, 1.0]
 
 
-@pytest.mark.parametrize("most", [1.7e308, 5e-324])
-def test_numbers_of_any_size_have_a_place(most, tmp_path, says):
-    path = tmp_path / "sizes.jsonl"
-    path.write_text(f'{{"t": 0, "x": {most}}}\n{{"t": 1, "x": {-most}}}\n{{"t": 2, "x": 0.0}}\n')
-    assert says(0, "look", path).out.split()[-3:] == ["█", "▁", "▅"]
-    says(0, "look", path, "-o", tmp_path / "sizes.html")
-    drawn = re.findall(r'd="M([^"]+)Z', (tmp_path / "sizes.html").read_text())
-    assert drawn
-    assert {point.split()[1] for one in drawn for point in one.split("L")} == {
-        "3.0",
-        "20.0",
-        "37.0",
-    }
+@each("most", [1.7e308, 5e-324])
+def test_numbers_of_any_size_are_drawn(most, put, says):
+    rows = f'{{"t": 0, "x": {most}}}\n{{"t": 1, "x": {-most}}}\n{{"t": 2, "x": 0.0}}\n'
+    assert says(0, "look", put("sizes.jsonl", rows)).out.split()[-3:] == ["█", "▁", "▅"]
+    says(0, "look", "sizes.jsonl", "-o", "sizes.html")
+    (curve,) = re.findall(r'd="M([^"]+)Z', Path("sizes.html").read_text())
+    assert {point.split()[1] for point in curve.split("L")} == {"3.0", "20.0", "37.0"}
 
 
-def test_null_is_no_label_and_a_name_without_any_value_is_left_out(tmp_path, says):
-    path = tmp_path / "null.jsonl"
-    path.write_text(
-        '{"t": 0, "mode": "blue", "gone": null}\n{"t": 1, "mode": null}\n{"t": 2, "mode": "red"}\n'
-    )
-    told = " ".join(says(0, "look", path).out.split())
+def test_null_is_no_label_and_a_name_without_any_value_is_left_out(put, says):
+    rows = ['{"t": 0, "mode": "blue", "gone": null}', '{"t": 1, "mode": null}']
+    rows += ['{"t": 2, "mode": "red"}']
+    told = " ".join(says(0, "look", put("null.jsonl", "\n".join(rows))).out.split())
     assert "mode label blue, red" in told
     assert "left out: gone: no value in the recording" in told
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("odd", ["word", "1" * 100_000 + "x", "1.5\n2.5"])
-def test_a_column_is_looked_at_to_its_last_cell(odd, put, says):
+def test_the_kind_of_a_column_depends_on_its_last_cell_too(odd, put, says):
     rows = "".join(f"{t},{t / 7},{t % 3}\n" for t in range(20_000))
     told = says(0, "look", put("long.csv", f't,x,n\n{rows}20000,"{odd}",1\n')).out
     assert "x: numbers and text" in " ".join(told.split())
     assert "0 … 2" in told
 
 
-@pytest.mark.parametrize(
+@each(
     ("number", "code", "told"),
     [
         (2**63 + 5, 0, "id real always 9.22337204e+18"),
         (10**400, 2, "large.jsonl: line 1: field `id`"),
     ],
-    ids=["a double", "larger than one"],
 )
-def test_a_whole_number_of_more_than_64_bits_is_a_real_one(number, code, told, put, says):
+def test_an_integer_of_more_than_64_bits_is_read_as_a_double(number, code, told, put, says):
     path = put("large.jsonl", "".join(f'{{"t": {t}, "id": {number}}}\n' for t in range(3)))
     assert told in " ".join("".join(says(code, "look", path)).split())
 
 
-def test_unsigned_numbers_take_64_bits(tmp_path, says):
-    """No signal of a specification has as many; they can be looked at."""
+def test_unsigned_64_bit_numbers_are_shown(tmp_path, says):
+    """No signal of a specification can have such values."""
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file["log/t"] = np.arange(2.0)
         file["log/id"] = np.array([2**63 + 5, 2**64 - 1], np.uint64)
-    assert "9223372036854775808 … 18446744073709551616" in re.sub(
-        r"…[^0-9]*1 Hz[^0-9]*", "… ", " ".join(says(0, "look", tmp_path / "a.h5").out.split())
-    )
+    shown = " ".join(says(0, "look", tmp_path / "a.h5").out.split())
+    shown = re.sub(r"…[^0-9]*1 Hz[^0-9]*", "… ", shown)
+    assert "9223372036854775808 … 18446744073709551616" in shown

@@ -1,4 +1,4 @@
-"""What each command says of words that are wrong: what is the matter, and what is done about it."""
+"""Wrong arguments of each command are refused with cause and fix."""
 
 import os
 import shlex
@@ -48,7 +48,7 @@ NO_PIECE = "this format cannot be clipped; these can: CSV"
 
 @pytest.fixture
 def folder(door):
-    """An input of each kind."""
+    """A folder with an input of each kind."""
     (door / "bag").mkdir()
     os.mkfifo(door / "pipe")
     for name, text in FILES.items():
@@ -275,8 +275,8 @@ MISTAKES = {
 
 
 @pytest.mark.parametrize("command", MISTAKES)
-def test_what_is_wrong_is_said_and_nothing_is_done(command, folder, says):
-    """The exit code is 2, no file changes; what is near is proposed, and nothing is obeyed."""
+def test_wrong_arguments_are_reported_and_no_file_changes(command, folder, says):
+    """The exit code is 2, a close name is proposed, and no escape reaches the terminal."""
     before = contents(folder)
 
     @each(("words", "told"), MISTAKES[command])
@@ -284,7 +284,7 @@ def test_what_is_wrong_is_said_and_nothing_is_done(command, folder, says):
         shown = says(2, *[command][command == "rvmon" :], *shlex.split(words))
         assert told in shown.err
         assert ("did you mean" in shown.err) is ("did you mean" in told)
-        assert not [one for one in ("Traceback", "internal error", "\x1b") if one in shown.err]
+        assert not [bad for bad in ("Traceback", "internal error", "\x1b") if bad in shown.err]
         assert shown.out == ""
         assert contents(folder) == before
 

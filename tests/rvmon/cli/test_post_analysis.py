@@ -1,4 +1,4 @@
-"""What triggers lacked, and cover goals, from the columns of a plain file and from all samples."""
+"""Nearest misses, cover goals and notes on failures: found in columns as in all samples."""
 
 import json
 import random
@@ -37,7 +37,7 @@ SILENT = {
 
 
 def rows(seed: int) -> list[dict]:
-    """A plain recording in which few rows change something."""
+    """A recording with a change in few of its rows."""
     rng = random.Random(seed)
     t, row, made = 5_000_000_000, {"p": False, "q": True, "x": 0.5, "go": False}, []
     for _ in range(400):
@@ -52,7 +52,7 @@ def rows(seed: int) -> list[dict]:
 
 @pytest.fixture(params=[1, 2])
 def traces(request, tmp_path):
-    """The same rows as plain CSV, as CSV in words, and as JSON lines."""
+    """The same rows as CSV with numbers, as CSV with `true` and `false`, and as JSON lines."""
     found = rows(request.param)
     lines = [",".join(found[0])]
     lines += [
@@ -66,13 +66,13 @@ def traces(request, tmp_path):
 
 
 @pytest.fixture
-def opened(monkeypatch):
-    """The recordings that are read once more."""
-    found, begin = [], post_analysis.opened
+def read_again(monkeypatch):
+    """The recordings that are read a second time."""
+    found, opened = [], post_analysis.opened
 
     def noted(*given, **more):
         found.append(given)
-        return begin(*given, **more)
+        return opened(*given, **more)
 
     monkeypatch.setattr(post_analysis, "opened", noted)
     return found
@@ -81,7 +81,7 @@ def opened(monkeypatch):
 @pytest.mark.law
 @pytest.mark.parametrize("until", [None, 60.0])
 @pytest.mark.parametrize("time", ["held", "sampled", "sampled every 300 ms"])
-def test_the_nearest_miss_is_that_of_all_samples(time, until, traces):
+def test_the_nearest_miss_equals_that_of_all_samples(time, until, traces):
     text = HEAD.format(time=time) + "".join(
         f"requirement R{number}\n  upon {trigger}\n  then within 1 s q\n"
         for number, trigger in enumerate(SILENT.values())
@@ -89,7 +89,7 @@ def test_the_nearest_miss_is_that_of_all_samples(time, until, traces):
     spec = rvmon.loads(text)
     for trace in traces:
         report = judge(spec, trace, Options(until=until)).report
-        samples = [one for one in spec.recording(trace) if one.t <= report.end]
+        samples = [sample for sample in spec.recording(trace) if sample.t <= report.end]
         silent = [name for name, verdict in report.verdicts.items() if verdict == "NT"]
         assert len(silent) > 5
         names = spec.recording(trace).names
@@ -101,7 +101,7 @@ def test_the_nearest_miss_is_that_of_all_samples(time, until, traces):
 
 @pytest.mark.law
 @pytest.mark.parametrize("until", [None, 60.0])
-def test_goals_are_those_of_all_samples(until, traces, monkeypatch):
+def test_goals_equal_those_of_all_samples(until, traces, monkeypatch):
     text = HEAD.format(time="held") + (
         "requirement R1\n  always (p or not p)\n"
         "cover shown = F (p and q and F[1 s, 9 s] go)\n"
@@ -110,14 +110,13 @@ def test_goals_are_those_of_all_samples(until, traces, monkeypatch):
     )
     spec = rvmon.loads(text)
     by_columns = [judge(spec, trace, Options(until=until)).report for trace in traces]
-
     monkeypatch.setattr(recording.FileRecording, "pieces", recording.FileRecording.__iter__)
     by_samples = [judge(spec, trace, Options(until=until)).report for trace in traces]
     assert by_columns == by_samples
-    assert [list(one.goals.values()) for one in by_columns] == [["P", "I", "I"]] * 3
+    assert [list(report.goals.values()) for report in by_columns] == [["P", "I", "I"]] * 3
 
 
-ON_THE_WAY = {
+NOTED_IN_PASSING = {
     "a signal": "q and x > 1",
     "what is false": "not q or x < 0",
     "an update": "updated(x) and not p",
@@ -126,7 +125,7 @@ ON_THE_WAY = {
     "an event": "go",
     "an event with a signal": "go and q",
 }
-READ_AGAIN = {
+NEEDS_HISTORY = {
     "a change": "changed(x)",
     "the past": "once[0 s, 2 s] (p and go)",
     "a window": "count(go, 3 s) >= 2",
@@ -136,9 +135,10 @@ READ_AGAIN = {
 @pytest.mark.law
 @pytest.mark.parametrize("stale", ["", "stale after 300 ms"])
 @pytest.mark.parametrize("time", ["held", "sampled", "sampled every 300 ms", "held\nmax delay 1 s"])
-@pytest.mark.parametrize("awaited", [ON_THE_WAY, READ_AGAIN])
-def test_late_answers_are_noted_on_the_way(awaited, time, stale, traces, opened, monkeypatch):
-    """They are those of a short recording, which is remembered, and so are the values."""
+@pytest.mark.parametrize("awaited", [NOTED_IN_PASSING, NEEDS_HISTORY])
+def test_late_answers_and_values_are_those_of_a_recording_in_memory(
+    awaited, time, stale, traces, read_again, monkeypatch
+):
     text = HEAD.format(time=time).replace("x : real", f"x : real {stale}") + "".join(
         f"requirement R{number}\n  upon go or p\n  then within 500 ms ({formula})\n"
         for number, formula in enumerate(awaited.values())
@@ -155,48 +155,41 @@ def test_late_answers_are_noted_on_the_way(awaited, time, stale, traces, opened,
             assert judge(spec, trace, Options()).report == short
         assert short.values["S"]
         assert len(short.late) > 1
-    # In clocked time an event counts at the next position: then what was before is asked for.
-    is_again = awaited is READ_AGAIN or time == "sampled every 300 ms"
-    assert len(opened) == (len(traces) if is_again else 0)
+    # In clocked time an event counts at the next position, so earlier samples are needed.
+    is_again = awaited is NEEDS_HISTORY or time == "sampled every 300 ms"
+    assert len(read_again) == (len(traces) if is_again else 0)
 
 
-def test_of_many_failures_in_all_each_requirement_has_some_looked_up(tmp_path, monkeypatch):
+def test_the_limit_of_explained_failures_leaves_one_to_each_requirement(put, monkeypatch):
     monkeypatch.setattr("rvmon.cli.failure_notes.MOST_LATE_IN_ALL", 4)
     text = "spec s\nevent e\nsignal p : bool\n" + "".join(
         f"requirement R{n}\n  upon e then within {n + 1} ms p\n" for n in range(9)
     )
     rows = "".join(f"{t},{int(t % 4 == 1)},{int(t % 4 == 3)}\n" for t in range(40))
-    (tmp_path / "a.csv").write_text("t,e,p\n" + rows)
-    report = judge(rvmon.loads(text), str(tmp_path / "a.csv"), Options()).report
-    assert {name: list(found) for name, found in report.late.items()} == {
+    report = judge(rvmon.loads(text), put("a.csv", "t,e,p\n" + rows), Options()).report
+    assert {name: [*found] for name, found in report.late.items()} == {
         f"R{n}": [1] for n in range(9)
     }
 
 
-def test_a_trigger_of_instances_hides_no_miss(tmp_path):
+def test_a_trigger_of_instances_hides_no_miss(put):
     text = (
         "spec s\nevent go(k: int)\nsignal p, q : bool\n"
         "requirement R1\n  upon p and q then within 1 s go.k == k\n  for each k in go.k\n"
         "requirement R2\n  upon p and q then within 1 s go\n"
     )
-    path = tmp_path / "a.jsonl"
-    path.write_text('{"t": 0, "p": false, "q": false}\n{"t": 1, "p": true}\n{"t": 2, "p": false}\n')
-    report = judge(rvmon.loads(text), str(path), Options()).report
+    rows = '{"t": 0, "p": false, "q": false}\n{"t": 1, "p": true}\n{"t": 2, "p": false}\n'
+    spec, path = rvmon.loads(text), put("a.jsonl", rows)
+    report = judge(spec, path, Options()).report
     assert report.misses == {"R2": "`q` was never true while `p` was (first at 1 s)"}
-
-
-def test_nothing_is_looked_up_for_nobody(tmp_path):
-    (tmp_path / "a.csv").write_text("t,p\n0,0\n1,0\n")
-    spec = rvmon.loads("spec s\nsignal p : bool\nrequirement R\n  upon p then within 1 s not p\n")
-    assert judge(spec, str(tmp_path / "a.csv"), Options()).report.misses
-    assert not judge(spec, str(tmp_path / "a.csv"), Options(explains=False)).report.misses
+    assert not judge(spec, path, Options(explains=False)).report.misses
 
 
 @pytest.mark.parametrize("held", [2, 90])
-def test_first_failures_tell_what_signals_were(tmp_path, monkeypatch, held):
-    """Numbers and states of the failed part, with units, alike whether the file is read again.
+def test_first_failures_have_the_values_of_their_signals(put, monkeypatch, held):
+    """Numbers and states that the failed part reads, with units; no truth values or triggers.
 
-    Not what is true or false itself, what is measured over a window, or what the trigger read.
+    They are the same when the file has to be read again.
     """
     monkeypatch.setattr(post_analysis, "MOST_HELD", held)
     text = """spec s
@@ -204,13 +197,12 @@ signal force : real [N]
 signal mode : {idle, busy}
 signal ok : bool
 signal other : real
-requirement R1 upon fall(ok) then immediately (force <= 40 N and mode = idle and other < 3)
-""".replace("R1 ", "R1\n")
+requirement R1
+upon fall(ok) then immediately (force <= 40 N and mode = idle and other < 3)
+"""
     rows = "t,force,mode,ok,other\n0,10,idle,1,1\n1,41.5,busy,0,\n2,,,1,nan\n3,,,0,\n"
     rows += "4,,,1,1\n5,3,idle,0,7\n6,,,1,\n7,50,,0,\n"
-    path = tmp_path / "a.csv"
-    path.write_text(rows)
-    report = judge(rvmon.loads(text), str(path), Options()).report
+    report = judge(rvmon.loads(text), put("a.csv", rows), Options()).report
     assert report.values == {
         "R1": {
             1: {"force": "41.5 N", "mode": "busy", "other": "1"},
@@ -222,8 +214,7 @@ requirement R1 upon fall(ok) then immediately (force <= 40 N and mode = idle and
 
 
 @pytest.mark.parametrize("form", ["text", "json"])
-def test_an_attempt_is_explained_once(form, tmp_path, monkeypatch, says):
-    """For the values at its decision, what came late, the text, the tables and the pages."""
+def test_an_attempt_is_explained_once_for_all_outputs(form, tmp_path, monkeypatch, says):
     explained = Counter[str]()
     details = NotesReader.details
 

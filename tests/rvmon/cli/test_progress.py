@@ -1,4 +1,4 @@
-"""Long work shows at a terminal how far it is."""
+"""Long work shows its progress on a terminal."""
 
 import io
 from contextlib import redirect_stderr
@@ -14,13 +14,12 @@ class Screen(io.StringIO):
     """A terminal."""
 
     def isatty(self):
-        """It is one."""
         return True
 
 
 @pytest.fixture
 def screen(tmp_path, monkeypatch):
-    """A terminal whose user has no patience, beside a specification and recordings."""
+    """A terminal that shows progress at once, in a folder with a specification and recordings."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "s.rv").write_text("spec s\nsignal p : bool\nrequirement R\n  always p\n")
     for name in ("one", "two"):
@@ -40,11 +39,8 @@ def screen(tmp_path, monkeypatch):
         ("check s.rv --analyse", "analysing s.rv"),
     ],
 )
-def test_long_work_says_how_far_it_is_and_short_work_nothing(screen, monkeypatch, words, told):
-    """Recordings are counted, a single one by what was read; what nobody can count is named.
-
-    That at once, as it may last.
-    """
+def test_progress_is_shown_for_long_work_only(screen, monkeypatch, words, told):
+    """Several recordings are counted; one shows its share read. An analysis is named at once."""
     with redirect_stderr(screen):
         assert main(words.split()) == 0
     assert told in screen.getvalue()

@@ -1,4 +1,4 @@
-"""`rvmon run` with coverpoints: what must not be hit, and the database."""
+"""`rvmon run` with coverpoints: illegal bins, hits, goals and the database."""
 
 import io
 import json
@@ -42,11 +42,11 @@ def files(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_an_illegal_bin_is_an_error_of_the_run(files, capsys, says):
+def test_a_hit_of_an_illegal_bin_fails_the_run(files, says):
     assert "illegal:" not in says(0, "run", "arm.rv", "calm.csv").out
-    assert main(["run", "arm.rv", "wild.csv", "--junit", "j.xml", "--report", "pages"]) == 1
+    shown = says(1, "run", "arm.rv", "wild.csv", "--junit", "j.xml", "--report", "pages").out
     line = "illegal: `yes × moving` of `both` was hit at 1 s, 2 times in all"
-    assert line in capsys.readouterr().out
+    assert line in shown
     (failure,) = ET.parse("j.xml").getroot().iter("failure")  # noqa: S314 - our own
     assert failure.get("message") == line
     assert line in next((files / "pages").glob("*wild*.html")).read_text()
@@ -57,7 +57,7 @@ def test_an_illegal_bin_is_an_error_of_the_run(files, capsys, says):
     assert shown["requirements"]["A1"]["verdict"] == "P"
 
 
-def test_what_was_hit_is_told_without_a_database(files, says):
+def test_hits_are_shown_without_a_database(files, says):
     text = says(0, "run", "arm.rv", "calm.csv").out
     assert "person: 2 of 2 covered; hit: yes 1, no 2" in text
     assert "both: not covered: yes × stops" in text
@@ -66,19 +66,13 @@ def test_what_was_hit_is_told_without_a_database(files, says):
     assert "both: not covered" not in text
     shown = json.loads(says(0, "run", "arm.rv", "calm.csv", "--format", "json").out)["coverage"]
     assert [group["name"] for group in shown] == ["person", "arm", "both"]
-    assert shown[0]["bins"][1] == {
-        "name": "no",
-        "kind": "goal",
-        "goal": 1,
-        "hits": 2,
-        "first": 0,
-    }
-    missed = [one["name"] for one in shown[2]["bins"] if not one["hits"]]
+    no = {"name": "no", "kind": "goal", "goal": 1, "hits": 2, "first": 0}
+    assert shown[0]["bins"][1] == no
+    missed = [item["name"] for item in shown[2]["bins"] if not item["hits"]]
     assert missed == ["yes × moving", "yes × stops"]
 
 
-def test_a_column_that_a_coverpoint_reads(files, says):
-    """Without it, no bin would be hit in silence."""
+def test_a_missing_column_of_a_coverpoint_is_an_error(files, says):
     (files / "few.csv").write_text("t,state\n0,idle\n")
     spec = SPEC.replace("  upon near\n", "  upon state == moving\n")
     (files / "arm.rv").write_text(spec)
@@ -87,7 +81,7 @@ def test_a_column_that_a_coverpoint_reads(files, says):
 
 
 @pytest.mark.parametrize("jobs", ["1", pytest.param("2", marks=pytest.mark.slow)])
-def test_the_database(files, jobs):
+def test_a_second_run_replaces_its_tests_in_the_database(files, jobs):
     command = ["run", "arm.rv", "calm.csv", "wild.csv", "--coverage", "c.db", "--jobs", jobs]
     assert main(command) == 1
     assert main(command) == 1
@@ -96,15 +90,14 @@ def test_the_database(files, jobs):
     assert coverage.entries[0].record.verdicts == {"A1": "P"}
 
 
-def test_a_first_hit_is_told_in_seconds_of_its_run(files, says):
-    """As all instants are, with the stamp beside it where the log has another clock."""
+def test_a_first_hit_has_its_time_in_the_run_and_its_stamp(files, says):
     (files / "calm.csv").write_text("t,near,state\n1700000000,false,idle\n1700000000.5,true,\n")
     assert main(["run", "arm.rv", "calm.csv", "--coverage", "c.db"]) == 0
     told = " ".join(says(0, "cover", "c.db", "--bins").out.split())
     assert "calm.csv at 0.5 s (stamp 1700000000.5 s, 2023-11-14 22:13:20 UTC)" in told
 
 
-def test_from_standard_input(files, monkeypatch):
+def test_an_illegal_hit_on_standard_input_fails_the_run(files, monkeypatch):
     lines = ['{"t": 0, "near": true, "state": "moving"}', '{"t": 1, "state": "idle"}']
     monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO("\n".join(lines).encode())))
     assert main(["run", "arm.rv", "-"]) == 1
@@ -113,11 +106,11 @@ def test_from_standard_input(files, monkeypatch):
 @pytest.mark.skipif(sys.platform == "win32", reason="no limits of files")
 @pytest.mark.process
 @pytest.mark.parametrize("kilobytes", [0, 8])
-def test_a_full_disk_is_told_and_takes_nothing_away(files, kilobytes):
-    """Whether there was room for none, or some of the tables; `cover` tells what is left of it."""
+def test_a_full_disk_is_reported_and_loses_no_earlier_results(files, kilobytes):
+    """With room for no table or for some; `cover` refuses the database that is left."""
     resource = pytest.importorskip("resource")
     words = ["run", "arm.rv", "calm.csv", "--coverage", "c.db"]
-    # Else modules are kept cut off, for all who import them.
+    # Without this, Python would cache modules that the limit has truncated.
     environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}
 
     def limited():
@@ -143,25 +136,22 @@ def test_a_full_disk_is_told_and_takes_nothing_away(files, kilobytes):
     assert [entry.record for entry in read(["c.db"]).entries] == kept
 
 
-def test_cover_goals_are_shown_or_open(tmp_path, capsys, says):
-    """A run shows a goal, or could still have, or cannot any more; several make it met or open."""
-    spec = tmp_path / "s.rv"
-    spec.write_text(
+def test_cover_goals_are_shown_possible_or_missed_and_met_by_several_runs(put, says):
+    put(
+        "s.rv",
         'spec s\nsignal a : bool\nevent e\nrequirement R1 "x"\n  upon e\n  then immediately a\n'
-        "cover met = e and a\ncover never = a and not a\n"
+        "cover met = e and a\ncover never = a and not a\n",
     )
-    traces = []
-    for name, last in (("one", "1"), ("two", "0")):
-        trace = tmp_path / f"{name}.csv"
-        trace.write_text(f"t,a,e\n0,1,0\n1,{last},{last}\n")
-        traces.append(str(trace))
-    shown = says(0, "run", spec, *traces).out
+    traces = [
+        put(f"{name}.csv", f"t,a,e\n0,1,0\n1,{last},{last}\n")
+        for name, last in (("one", "1"), ("two", "0"))
+    ]
+    shown = says(0, "run", "s.rv", *traces).out
     assert "met  P ✓  shown" in shown
     assert "met  I ?  not shown, still possible at the end" in shown
     assert "never  NT –  not shown" in shown
     assert "cover goal met: met, shown by 1 of 2" in shown
     assert "cover goal never: open" in shown
-    main(["run", str(spec), traces[0], "--format", "json"])
-    text = capsys.readouterr().out
+    text = says(0, "run", "s.rv", traces[0], "--format", "json").out
     assert json.loads(text)["goals"] == {"met": "P", "never": "NT"}
     assert Report.from_json(text).goals == {"met": "P", "never": "NT"}

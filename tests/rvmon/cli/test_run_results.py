@@ -1,4 +1,4 @@
-"""`rvmon run` writes verdicts as data, goes on where it was ended, and knows of known failures."""
+"""`rvmon run` writes tables of verdicts, resumes interrupted runs and accepts known failures."""
 
 import json
 import os
@@ -24,7 +24,7 @@ requirement R2
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """A recording that passes, one that fails, one that is none."""
+    """A recording that passes, one that fails, and a broken one."""
     (tmp_path / "s.rv").write_text(SPEC)
     (tmp_path / "good.csv").write_text("t,p\n0,1\n5,1\n")
     (tmp_path / "bad.csv").write_text("t,p\n0,1\n5,0\n9,0\n")
@@ -34,7 +34,7 @@ def folder(tmp_path, monkeypatch):
 
 
 def interrupted(monkeypatch, words):
-    """A run that is ended as its results are about to be written."""
+    """Interrupt a run when it is about to write its results."""
 
     def full(*_):
         raise KeyboardInterrupt
@@ -45,7 +45,7 @@ def interrupted(monkeypatch, words):
 
 
 @pytest.mark.slow
-def test_verdicts_are_written_also_of_what_breaks_off(folder, capsys):
+def test_a_table_has_the_verdicts_of_the_last_run_and_errors(folder):
     assert main(["run", "s.rv", "good.csv", "--out", "v.csv"]) == 0
     assert main(["run", "s.rv", "good.csv", "bad.csv", "--out", "v.csv"]) == 1
     found = [(row.recording, row.requirement, row.verdict) for row in read_results("v.csv")]
@@ -63,13 +63,12 @@ def test_verdicts_are_written_also_of_what_breaks_off(folder, capsys):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("resume", [True, False])
-def test_a_run_that_was_ended_goes_on(folder, capsys, says, monkeypatch, resume):
+def test_a_resumed_run_gives_the_results_of_a_whole_one(folder, says, monkeypatch, resume):
     words = ["run", "s.rv", "good.csv", "bad.csv", "--out", "v.csv"]
     whole, table = says(1, *words).out, (folder / "v.csv").read_text()
     (folder / "v.csv").unlink()
     interrupted(monkeypatch, words)
     assert len(journal.entries(folder / "v.csv.unfinished")) == 3
-    capsys.readouterr()
     (folder / "good.csv").write_text("t,p\n0,1\n5,1\n\n")
     told = says(1, *words, *["--resume"] if resume else [])
     assert told.out == whole
@@ -79,8 +78,8 @@ def test_a_run_that_was_ended_goes_on(folder, capsys, says, monkeypatch, resume)
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("changed", "kept"), [("a.log", "1 of 2 recordings"), ("car.dbc", "")])
-def test_what_has_changed_is_judged_again(folder, says, monkeypatch, changed, kept):
-    """Also where size and time are the same, and where only what says what it holds is another."""
+def test_a_changed_file_is_evaluated_again(folder, says, monkeypatch, changed, kept):
+    """Even with its old size and time; a changed database of CAN messages affects all logs."""
     pytest.importorskip("can")
     for name in ("a.log", "b.log"):
         write_can(folder / name, [(1_000_000, 0.25, 1), (2_000_000, 0.25, 1)])
@@ -99,8 +98,7 @@ def test_what_has_changed_is_judged_again(folder, says, monkeypatch, changed, ke
 
 
 @pytest.mark.slow
-def test_shards_are_joined(folder, says):
-    """Wherever each was judged; what broke off, and a shard that is missing, is judged here."""
+def test_shards_are_joined_and_missing_or_broken_results_evaluated(folder, says):
     recordings = ["good.csv", "bad.csv", "cut.csv", "more.csv", "last.csv"]
     for copy in recordings[3:]:
         (folder / copy).write_text((folder / "bad.csv").read_text())
@@ -110,22 +108,25 @@ def test_shards_are_joined(folder, says):
     assert main([*words, "v.csv", "--shard", "3/3"]) == 2
     parts = [[row.recording for row in read_results(part)] for part in folder.glob("v.shard-*.csv")]
     assert sorted(map(set, parts), key=len) == [{"cut.csv"}, {"good.csv", "more.csv"}]
-    (folder / "more.csv").unlink()  # as it is on another machine
+    (folder / "more.csv").unlink()  # a recording of a finished shard may be on another machine
     assert "2 of 5 recordings were evaluated before" in says(2, *words, "v.csv", "--resume").err
     assert (folder / "v.csv").read_text() == (folder / "whole.csv").read_text()
     assert not list(folder.glob("*.unfinished"))
 
 
 @pytest.mark.slow
-def test_shards_of_another_specification_are_refused(folder, says):
+def test_results_of_another_specification_are_refused(folder, says):
     words = ["run", "s.rv", "good.csv", "bad.csv", "--out", "v.csv"]
     assert main([*words, "--shard", "2/2"]) == 1
     (folder / "s.rv").write_text(SPEC.replace("1 s", "2 s"))
-    assert "v.shard-2-of-2.csv.unfinished" in says(2, *words, "--resume").err
+    told = says(2, *words, "--resume").err
+    assert "v.shard-2-of-2.csv.unfinished" in told
+    assert "was started with another specification" in told
+    says(1, *words)
 
 
 @pytest.mark.slow
-def test_many_attempts_have_the_rows_that_few_have(folder):
+def test_lazy_attempts_have_the_rows_of_attempts_in_memory(folder):
     rows = "".join(f"{t},{t % 3 > 0:d}\n" for t in range(3000))
     (folder / "many.csv").write_text(f"t,p\n{rows}")
     spec = rvmon.load("s.rv")
@@ -135,23 +136,15 @@ def test_many_attempts_have_the_rows_that_few_have(folder):
 
 
 @pytest.mark.slow
-def test_another_run_does_not_go_on_with_it(folder, says):
-    words = ["run", "s.rv", "good.csv", "good.csv", "--out", "v.csv", "--resume"]
-    journal.create(folder / "v.csv.unfinished", [b"another"])
-    assert "was started with another specification" in says(2, *words).err
-    assert main([*words[:-1]]) == 0
-
-
-@pytest.mark.slow
-def test_known_failures_fail_no_run(folder, capsys, says):
+def test_known_failures_fail_no_run_until_their_date(folder, says):
     known = folder / "known.toml"
     known.write_text(
         '[[known]]\nrequirement = "R1"\nreason = "worn"\nuntil = 2999-01-01\n'
         '[[known]]\nrequirement = "R2"\nreason = "slow"\nuntil = 2999-01-01\n'
     )
     words = ["run", "s.rv", "good.csv", "bad.csv", "--known", "known.toml"]
-    assert main([*words, "--junit", "j.xml", "--coverage", "c.db", "--report", "pages"]) == 0
-    assert "R1 in bad.csv failed as known: worn (until 2999-01-01)" in capsys.readouterr().err
+    told = says(0, *words, "--junit", "j.xml", "--coverage", "c.db", "--report", "pages").err
+    assert "R1 in bad.csv failed as known: worn (until 2999-01-01)" in told
     suite = ET.parse(folder / "j.xml").getroot()[1]  # noqa: S314 - ours
     assert (suite.get("failures"), suite.get("skipped")) == ("0", "2")
     assert suite[0][0].get("message").startswith("known: worn (until 2999-01-01); F: attempt 1")
@@ -162,7 +155,7 @@ def test_known_failures_fail_no_run(folder, capsys, says):
     assert "R1 (worn) was known to fail until 1999-01-01, and still fails" in says(1, *words).err
 
 
-def test_what_fails_stands_first_in_the_list_of_recordings(folder):
+def test_the_index_of_pages_lists_failures_first(folder):
     assert main(["run", "s.rv", "good.csv", "bad.csv", "cut.csv", "--report", "pages"]) == 2
     index = (folder / "pages" / "index.html").read_text()
     places = [index.index(f'data-name="{name}.csv') for name in ("cut", "bad", "good")]
@@ -173,13 +166,12 @@ def test_what_fails_stands_first_in_the_list_of_recordings(folder):
     assert 'class="filters" hidden="hidden"' in index
 
 
-def test_two_runs_are_compared(folder, says):
-    """What differs costs exit code 1 if it is worse; recordings of one run alone are told."""
+def test_a_worse_verdict_than_in_an_earlier_table_fails_the_comparison(folder, says):
     main(["run", "s.rv", "good.csv", "--out", "old.csv"])
     (folder / "good.csv").write_text((folder / "bad.csv").read_text())
     main(["run", "s.rv", "good.csv", "--out", "new.csv"])
     found = json.loads(says(1, "compare", "old.csv", "new.csv", "--format", "json").out)
-    assert [one["change"] for one in found["differences"]] == ["fails now", "fails now"]
+    assert [change["change"] for change in found["differences"]] == ["fails now", "fails now"]
     assert "fixed" in says(0, "compare", "new.csv", "old.csv").out
     head, first, _ = (folder / "old.csv").read_text().splitlines()
     (folder / "one.csv").write_text(f"{head}\n{first}\n")

@@ -1,4 +1,4 @@
-"""Recordings and outputs that are no files."""
+"""Pipes, closed streams, full disks and limits of memory."""
 
 import json
 import os
@@ -26,30 +26,29 @@ def folder(tmp_path):
     return tmp_path
 
 
-def rvmon(folder, *words, **options):
+def rvmon(folder, *words, stdout=subprocess.PIPE, **options):
     command = [sys.executable, "-m", "rvmon", *words]
-    return subprocess.run(  # noqa: S603
-        command, cwd=folder, stderr=subprocess.PIPE, timeout=60, check=False, **options
-    )
+    streams = {"stdout": stdout, "stderr": subprocess.PIPE}
+    return subprocess.run(command, cwd=folder, timeout=60, check=False, **streams, **options)  # noqa: S603
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes")
-def test_a_pipe_is_read_once(folder):
+def test_a_pipe_of_json_lines_is_read_and_one_of_csv_refused(folder):
     pipe = folder / "pipe.jsonl"
     os.mkfifo(pipe)
     writer = Thread(target=pipe.write_text, args=(LINES,))
     writer.start()
-    done = rvmon(folder, "run", "door.rv", "pipe.jsonl", stdout=subprocess.PIPE)
+    done = rvmon(folder, "run", "door.rv", "pipe.jsonl")
     writer.join()
     assert done.returncode == 1, done.stderr
     os.mkfifo(folder / "pipe.csv")
-    done = rvmon(folder, "run", "door.rv", "pipe.csv", stdout=subprocess.PIPE)
+    done = rvmon(folder, "run", "door.rv", "pipe.csv")
     assert done.returncode == 2
     assert b"pipe.csv: is a pipe" in done.stderr
 
 
-def test_a_reader_that_leaves_is_no_fault_and_no_success(folder):
-    """Who wants no more output, as `head` does, hears no complaint; the rest may have failed."""
+def test_a_reader_that_closes_the_pipe_ends_the_run_silently(folder):
+    """As `head` does. The exit code is no success, as the rest may have failed."""
     (folder / "good.jsonl").write_text(LINES.replace("false", "true"))
     for form in ("text", "json"):
         reading, writing = os.pipe()
@@ -61,8 +60,8 @@ def test_a_reader_that_leaves_is_no_fault_and_no_success(folder):
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no full device")
 @pytest.mark.parametrize("words", [("run", "door.rv", "run.jsonl"), ("--help",), ("run", "--help")])
-def test_a_full_disk_is_told(folder, words, monkeypatch):
-    monkeypatch.delenv("PYTHONUNBUFFERED", raising=False)  # argparse heeds no error of its writing
+def test_a_full_disk_is_reported(folder, words, monkeypatch):
+    monkeypatch.delenv("PYTHONUNBUFFERED", raising=False)  # argparse ignores errors of writing
     with open("/dev/full", "w") as full:
         done = rvmon(folder, *words, stdout=full)
     assert done.returncode == 2
@@ -78,30 +77,27 @@ def test_a_full_disk_is_told(folder, words, monkeypatch):
         (2, "run.jsonl", (1, b"run.jsonl", b"")),
     ],
 )
-def test_a_closed_output_costs_nothing_but_the_output_and_input_is_empty(
-    folder, closed, trace, told
-):
+def test_a_run_with_a_closed_descriptor_loses_only_that_stream(folder, closed, trace, told):
     words = ("run", "door.rv", trace)
-    done = rvmon(folder, *words, stdout=subprocess.PIPE, preexec_fn=lambda: os.close(closed))
+    done = rvmon(folder, *words, preexec_fn=lambda: os.close(closed))
     assert (done.returncode, done.stdout[:9], done.stderr) == told
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="file names are bytes")
-def test_a_name_that_is_no_text_is_shown_as_far_as_it_is(folder):
+def test_bytes_of_a_file_name_that_are_no_text_are_replaced(folder):
     name = os.fsencode(folder) + b"/n\xff.jsonl"
     with open(name, "w") as file:
         file.write(LINES)
-    words = ["run", "door.rv", os.fsdecode(name), "--format", "json"]
-    done = rvmon(folder, *words, stdout=subprocess.PIPE)
+    done = rvmon(folder, "run", "door.rv", os.fsdecode(name), "--format", "json")
     assert json.loads(done.stdout)["trace"].endswith("n\ufffd.jsonl")
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are not kept elsewhere")
 @pytest.mark.parametrize("jobs", ["1", "2"])
-def test_a_command_takes_no_more_memory_than_it_may(folder, jobs):
+def test_max_memory_ends_a_run_that_needs_more(folder, jobs):
     (folder / "big.jsonl").write_text('{"t":0,"x":[[]' + ",[]" * 20_000_000 + "]}\n")
     words = ("--max-memory", "512", "--jobs", jobs, "door.rv", "run.jsonl", "big.jsonl")
-    done = rvmon(folder, "run", *words, stdout=subprocess.PIPE)
+    done = rvmon(folder, "run", *words)
     assert (done.returncode, done.stdout) == (2, b"")
     assert done.stderr == b"error: the memory is not enough, of 512 MB: raise --max-memory\n"
     done = rvmon(folder, "run", "--max-memory", "5", "door.rv", "run.jsonl")
@@ -111,7 +107,7 @@ def test_a_command_takes_no_more_memory_than_it_may(folder, jobs):
 
 @pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are not kept elsewhere")
 def test_a_parquet_file_that_needs_more_memory_is_not_called_damaged(folder):
-    """A cell that unpacks to 300 MB ends with the message; the least that may be had is enough."""
+    """One cell unpacks to 300 MB; a small file needs no more than the limit."""
     pa, pc = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.compute")
     pq = pytest.importorskip("pyarrow.parquet")
     (folder / "said.rv").write_text("spec s\nsignal l : {a, b}\nrequirement R1\n  always l == b\n")
@@ -121,16 +117,16 @@ def test_a_parquet_file_that_needs_more_memory_is_not_called_damaged(folder):
         table = pa.table({"t": [0.0, 1.0], "l": labels})
         pq.write_table(table, folder / f"{name}.parquet", compression="zstd", **plain)
     words = ("run", "--max-memory", "768", "said.rv")
-    done = rvmon(folder, *words, "big.parquet", stdout=subprocess.PIPE)
+    done = rvmon(folder, *words, "big.parquet")
     assert done.stderr == b"error: the memory is not enough, of 768 MB: raise --max-memory\n"
     assert done.returncode == 2
-    done = rvmon(folder, *words, "small.parquet", stdout=subprocess.PIPE)
+    done = rvmon(folder, *words, "small.parquet")
     assert (done.returncode, done.stderr) == (0, b"")
 
 
 @pytest.mark.parametrize("name", ["zero.csv", "zero.jsonl"])
-def test_no_line_fills_the_memory(folder, name):
+def test_an_endless_line_is_refused(folder, name):
     (folder / name).symlink_to("/dev/zero")
-    done = rvmon(folder, "run", "door.rv", name, stdout=subprocess.PIPE)
+    done = rvmon(folder, "run", "door.rv", name)
     assert (done.returncode, done.stdout) == (2, b"")
     assert b"line 1: longer than 67,108,864 characters" in done.stderr

@@ -1,26 +1,25 @@
-"""`rvmon verify` prints answers for people and programs, and exits accordingly."""
+"""`rvmon verify`: answers as text and JSON, and exit codes."""
 
 import json
 from pathlib import Path
 
 import pytest
 
-from rvmon.cli import main
-
 MODELS = Path(__file__).parents[3] / "examples" / "models"
 
 
-def test_queries_hold_or_are_not_decided(capsys, says):
-    model = str(MODELS / "fischer.ta")
+def queries(says, code, *words):
+    return json.loads(says(code, "verify", *words, "--format", "json").out)["queries"]
+
+
+def test_queries_hold_or_are_not_decided(says):
+    model = MODELS / "fischer.ta"
     assert says(0, "verify", model, "--const", "N=2").out.count("holds: A[]") == 2
-    assert main(["verify", model, "--max-states", "10", "--format", "json"]) == 1
-    assert json.loads(capsys.readouterr().out)["queries"][0]["holds"] is None
+    assert queries(says, 1, model, "--max-states", "10")[0]["holds"] is None
 
 
-def test_json_has_the_promised_shape(capsys):
-    model = str(MODELS / "fischer_broken.ta")
-    assert main(["verify", model, "--const", "N=2", "--format", "json"]) == 1
-    exclusion, alive = json.loads(capsys.readouterr().out)["queries"]
+def test_json_has_query_answer_trace_and_effort(says):
+    exclusion, alive = queries(says, 1, MODELS / "fischer_broken.ta", "--const", "N=2")
     assert exclusion["holds"] is False
     assert exclusion["query"].startswith("A[] forall")
     assert {"delay", "edge", "state"} <= exclusion["trace"][0].keys()
@@ -44,22 +43,21 @@ automaton Lamp {
 
 
 @pytest.fixture
-def lamp(tmp_path):
-    model, spec = tmp_path / "lamp.ta", tmp_path / "lamp.rv"
-    model.write_text(LAMP)
-    spec.write_text(
+def lamp(put):
+    """A folder with the model `lamp.ta` and the specification `lamp.rv`."""
+    put("lamp.ta", LAMP)
+    put(
+        "lamp.rv",
         "spec lamp\ntime held\nsignal lit : bool\nevent pressed, dark\n"
         "requirement OK\n  upon pressed then within 8 s dark\n"
-        "requirement BAD\n  upon pressed then for 6 s lit\n"
+        "requirement BAD\n  upon pressed then for 6 s lit\n",
     )
-    return str(model), str(spec)
 
 
 @pytest.mark.slow
-def test_requirements_on_all_runs(lamp, says):
-    """Each is decided, with runs that trigger, pass and fail it, drawn as a recording would be."""
-    model, spec = lamp
-    words = ["verify", model, "--spec", spec, "--bind", "lit=Lamp.on"]
+@pytest.mark.usefixtures("lamp")
+def test_requirements_are_decided_on_all_runs_and_example_runs_drawn(says):
+    words = ["verify", "lamp.ta", "--spec", "lamp.rv", "--bind", "lit=Lamp.on"]
     out = says(1, *words).out
     assert "OK: holds on all runs" in out
     assert "BAD: fails on some run" in out
@@ -73,17 +71,19 @@ def test_requirements_on_all_runs(lamp, says):
     assert bad["failing"][-1]["state"]["locations"] == {"Lamp": "off"}
 
 
-def test_suites(lamp, says):
-    model, _ = lamp
-    assert "1 run covers 2 of 2 edges" in says(0, "verify", model, "--suite", "edges").out
-    suite = json.loads(says(0, "verify", model, "--suite", "edge-pairs", "--format", "json").out)
+@pytest.mark.usefixtures("lamp")
+def test_suites_cover_edges_and_pairs_of_edges(says):
+    verify = ["verify", "lamp.ta"]
+    assert "1 run covers 2 of 2 edges" in says(0, *verify, "--suite", "edges").out
+    suite = json.loads(says(0, *verify, "--suite", "edge-pairs", "--format", "json").out)
     assert suite["missing"] == []
     assert suite["runs"][0]["trace"]
 
 
-def test_names_that_the_specification_or_the_model_lacks_are_told(lamp, capsys):
-    model, spec = lamp
-    assert main(["verify", model, "--spec", spec, "--bind", "light=Lamp.on"]) == 2
-    assert "no signal of that name is declared: there are lit" in capsys.readouterr().err
-    assert main(["verify", model, "--spec", spec]) == 1
-    assert "BAD: not expressible: the network has no signal `lit`" in capsys.readouterr().out
+@pytest.mark.usefixtures("lamp")
+def test_names_missing_in_the_specification_or_the_model_are_reported(says):
+    verify = ["verify", "lamp.ta", "--spec", "lamp.rv"]
+    told = says(2, *verify, "--bind", "light=Lamp.on").err
+    assert "no signal of that name is declared: there are lit" in told
+    told = says(1, *verify).out
+    assert "BAD: not expressible: the network has no signal `lit`" in told

@@ -1,4 +1,4 @@
-"""`rvmon watch` as a person uses it."""
+"""`rvmon watch`: output, exit codes, broken streams and changes of the specification."""
 
 import json
 import os
@@ -6,7 +6,7 @@ import signal
 import subprocess
 import sys
 import threading
-from contextlib import nullcontext
+from contextlib import contextmanager, nullcontext
 from io import StringIO
 from types import SimpleNamespace
 
@@ -14,7 +14,6 @@ import pytest
 from tests.rvmon.cli.conftest import DOOR
 
 from rvmon import loads
-from rvmon.cli import main
 from rvmon.cli.watch import _replace
 from rvmon.cli.watch_output import print_status
 from rvmon.live import Driver, SimulatedClock
@@ -25,28 +24,28 @@ FAILS = '{"t": 0, "closed": true, "knock": true}\n{"t": 3, "closed": false, "noi
 
 @pytest.fixture
 def door(door):
-    """With a stream that fails."""
+    """A folder with the specification and a stream that fails."""
     (door / "a.jsonl").write_text(FAILS)
     return door
 
 
-def test_each_verdict_is_a_line_and_the_end_a_table(door, capsys, says):
-    """The exit code says whether something failed; what is ignored is said."""
+@pytest.mark.usefixtures("door")
+def test_each_verdict_is_a_line_and_the_end_a_table(says):
     told = says(1, "watch", "door.rv", "a.jsonl")
     assert told.out.startswith("2.000000001 s  D1#1 F ✗  `closed` had to become false")
     assert "D1   F  ✗" in told.out
     assert "noise is not declared" in told.err
     assert "D1#1 F ✗" in says(1, "watch", "door.rv", "a.jsonl", "--format", "view").out
-    assert main(["watch", "door.rv", "a.jsonl", "--format", "json"]) == 1
-    first, last = map(json.loads, capsys.readouterr().out.splitlines())
+    told = says(1, "watch", "door.rv", "a.jsonl", "--format", "json").out
+    first, last = map(json.loads, told.splitlines())
     assert (first["attempt"], first["verdict"], first["decided"]) == ("D1#1", "F", 2_000_000_001)
     assert last == {"robot": "", "runs": 1, "verdicts": {"D1": "F"}, "samples": 2, "lost": 0}
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("before", ["[INFO] the robot starts", "\n", '{"level": "info"}'])
-def test_what_a_program_greets_with_does_not_choose_the_clock(door, says, before):
-    """Lines with stamps are judged at them, whatever stands above; each has its number."""
+def test_lines_before_the_first_sample_do_not_choose_the_clock(door, says, before):
+    """Samples with stamps are judged at these."""
     (door / "a.jsonl").write_text(f"{before}\n{FAILS}nonsense\n")
     told = says(1, "watch", "door.rv", "a.jsonl")
     assert told.out.startswith("2.000000001 s  D1#1 F ✗")
@@ -61,8 +60,7 @@ def test_what_a_program_greets_with_does_not_choose_the_clock(door, says, before
         ("--robot id", "there is no robot name in `id`", "no input yet"),
     ],
 )
-def test_a_time_or_a_robot_that_is_named_is_in_each_line(says, words, why, end):
-    """One without it is lost: neither stamped by the clock of the machine, nor of nobody."""
+def test_a_line_without_the_requested_time_or_robot_is_lost(says, words, why, end):
     told = says(1, "watch", "door.rv", "a.jsonl", *words.split())
     assert f"line 1 is rejected: {why}" in told.err
     assert end in told.out
@@ -71,8 +69,7 @@ def test_a_time_or_a_robot_that_is_named_is_in_each_line(says, words, why, end):
 @pytest.mark.parametrize(
     ("fault", "told"), [(OSError(5, "Input/output error"), "Input/output"), (MemoryError(), "Mem")]
 )
-def test_a_stream_that_breaks_off_passes_nothing(door, says, monkeypatch, fault, told):
-    """As a serial line that is unplugged: what came behind it nobody heard."""
+def test_requirements_stay_open_if_the_stream_breaks_off(door, says, monkeypatch, fault, told):
     pieces = [b'{"t": 0, "closed": true}\n']
 
     def read(*_):
@@ -88,10 +85,10 @@ def test_a_stream_that_breaks_off_passes_nothing(door, says, monkeypatch, fault,
 
 
 @pytest.mark.parametrize("form", ["text", "view"])
-def test_what_failed_before_a_change_of_the_specification_is_no_success(
+def test_a_failure_before_a_change_of_the_specification_fails_the_watch(
     door, says, monkeypatch, form
 ):
-    """Its verdicts are those of the new one from then on, whose writing may have been a touch."""
+    """The table at the end has the verdicts since the change, even if no byte changed."""
     is_taken_up = threading.Event()
     (door / "new.rv").write_text(DOOR)
     pieces = [b'{"t": 10, "closed": true}\n', FAILS.encode()]
@@ -113,56 +110,53 @@ def test_what_failed_before_a_change_of_the_specification_is_no_success(
     assert "D1   NT" in told.out
 
 
-def test_a_change_that_names_what_nobody_listens_to_is_not_taken_up(door, says, monkeypatch):
-    """Topics are chosen as the watch begins: a name that is new would be taken for silent."""
+@pytest.fixture
+def changed(door, says, monkeypatch):
+    """Watch a silent source, replace a file by each text (`None` deletes it), return the output."""
     source = nullcontext(SimpleNamespace(publish=print))
     source.publish = print
     monkeypatch.setattr("rvmon.adapters.dds.DdsSource", lambda *_, **__: source)
-    changes = [DOOR + "event other\n", DOOR + "\n"]
 
-    def sleep(_):
-        if not changes:
-            raise KeyboardInterrupt
-        (door / "new.rv").write_text(changes.pop(0))
-        os.replace("new.rv", "door.rv")
+    def watched(spec, name, *texts):
+        left = list(texts)
 
-    monkeypatch.setattr("rvmon.cli.watch.time.sleep", sleep)
-    said = says(1, "watch", "door.rv", "dds:7", "--format", "text")
-    said = " ".join((said.out + said.err).split())
+        def sleep(_):
+            if not left:
+                raise KeyboardInterrupt
+            text = left.pop(0)
+            (door / "new.rv").write_text(text or "")
+            os.replace("new.rv", name)
+            if text is None:
+                os.unlink(name)
+
+        monkeypatch.setattr("rvmon.cli.watch.time.sleep", sleep)
+        said = says(1, "watch", spec, "dds:7", "--format", "text")
+        return " ".join((said.out + said.err).split())
+
+    return watched
+
+
+KEPT = "The previous specification stays in use"
+
+
+def test_a_change_with_a_new_name_is_refused(changed):
+    """Topics are chosen at the start, so the new name would seem silent."""
+    said = changed("door.rv", "door.rv", DOOR + "event other\n", DOOR + "\n")
     assert "`other` is new, and topics are chosen when the watch starts" in said
-    assert (
-        "The previous specification stays in use. door.rv has changed: the new one applies" in said
-    )
+    assert f"{KEPT}. door.rv has changed: the new one applies" in said
 
 
-def test_a_change_of_an_imported_file_is_taken_up(door, says, monkeypatch):
-    """Also of one that another imports, and that is broken, or gone, for a while."""
-    source = nullcontext(SimpleNamespace(publish=print))
-    source.publish = print
-    monkeypatch.setattr("rvmon.adapters.dds.DdsSource", lambda *_, **__: source)
-    (door / "main.rv").write_text('import "names.rv"\n' + DOOR)
-    (door / "names.rv").write_text('import "times.rv"\n')
-    (door / "times.rv").write_text("const T = 1 s\n")
-    changes = ["const", None, "const T = 2 s\n"]
-
-    def sleep(_):
-        if not changes:
-            raise KeyboardInterrupt
-        text = changes.pop(0)
-        (door / "new.rv").write_text(text or "")
-        os.replace("new.rv", "times.rv")
-        if text is None:
-            os.unlink("times.rv")
-
-    monkeypatch.setattr("rvmon.cli.watch.time.sleep", sleep)
-    said = says(1, "watch", "main.rv", "dds:7", "--format", "text")
-    said = " ".join((said.out + said.err).split())
-    assert said.count("The previous specification stays in use") == 2
+def test_a_change_of_an_imported_file_applies_once_it_can_be_read(put, changed):
+    put("main.rv", 'import "names.rv"\n' + DOOR)
+    put("names.rv", 'import "times.rv"\n')
+    put("times.rv", "const T = 1 s\n")
+    said = changed("main.rv", "times.rv", "const", None, "const T = 2 s\n")
+    assert said.count(KEPT) == 2
     assert said.count("times.rv has changed: the new one applies") == 1
 
 
 @pytest.mark.slow
-def test_a_watch_of_too_many_robots_is_no_success(door, says):
+def test_too_many_robots_fail_the_watch(door, says):
     lines = [json.dumps({"t": 0, "robot": n, "closed": True}) for n in range(1_001)]
     (door / "a.jsonl").write_text("\n".join(lines) + "\n")
     told = says(1, "watch", "door.rv", "a.jsonl", "--robot", "robot", "--format", "json")
@@ -170,23 +164,22 @@ def test_a_watch_of_too_many_robots_is_no_success(door, says):
     assert "robot '1000' is one too many: at most 1000" in told.err
 
 
-def test_what_passes_can_be_left_out(door, capsys):
-    lines = FAILS.replace('"t": 3', '"t": 1')
-    (door / "a.jsonl").write_text(lines)
-    assert main(["watch", "door.rv", "a.jsonl", "--failures", "--format", "text"]) == 0
-    assert "D1#1" not in capsys.readouterr().out
+def test_passing_attempts_can_be_left_out(door, says):
+    (door / "a.jsonl").write_text(FAILS.replace('"t": 3', '"t": 1'))
+    told = says(0, "watch", "door.rv", "a.jsonl", "--failures", "--format", "text").out
+    assert "D1#1" not in told
 
 
-def test_of_many_complaints_of_a_kind_few_are_told(door, capsys):
+def test_only_some_of_many_equal_warnings_are_shown(door, says):
     (door / "a.jsonl").write_text(FAILS + "nonsense\n" * 123)
-    assert main(["watch", "door.rv", "a.jsonl", "--format", "text"]) == 1
-    told = [line for line in capsys.readouterr().err.splitlines() if "rejected" in line]
+    told = says(1, "watch", "door.rv", "a.jsonl", "--format", "text").err
+    told = [line for line in told.splitlines() if "rejected" in line]
     assert [line.split()[1] for line in told] == ["3", "4", "5", "6", "7", "12", "102"]
     assert "the 100th of this kind" in told[-1]
 
 
 @pytest.mark.slow
-def test_a_view_of_much_fits_and_begins_with_what_failed():
+def test_the_view_fits_the_terminal_and_starts_with_failures():
     text = "spec s\nsignal x : real\nevent e\n" + "".join(
         f"requirement R{number}\n  upon e\n  then within {100 + number} s x > {number}\n"
         for number in range(100)
@@ -207,23 +200,32 @@ def test_a_view_of_much_fits_and_begins_with_what_failed():
     assert "… and 96 more requirements: 96 NT" in lines
 
 
+@contextmanager
+def watching(form, **options):
+    """A process that watches its standard input, killed if it lasts for more than a minute."""
+    command = [sys.executable, "-m", "rvmon", "watch", "door.rv", "--format", form]
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+    environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
+    with subprocess.Popen(command, env=environment, **pipes, **options) as process:  # noqa: S603
+        alarm = threading.Timer(60, process.kill)
+        alarm.start()
+        yield process
+        alarm.cancel()
+
+
+def write(process, lines):
+    process.stdin.write(lines)
+    process.stdin.flush()
+
+
+OPENED = '{"closed": true}\n{"knock": true, "closed": false}\n'
+
+
 @pytest.mark.process
-def test_a_change_of_the_specification_is_taken_up_and_ctrl_c_is_an_end(door):
-    """While the stream is open; a change that is wrong is told and the previous one goes on."""
-    command = [sys.executable, "-m", "rvmon", "watch", "door.rv", "--format", "text"]
-    process = subprocess.Popen(  # noqa: S603
-        command,
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        env={**os.environ, "PYTHONUNBUFFERED": "1"},
-    )
-    alarm = threading.Timer(60, process.kill)  # or a line that never comes is waited for
-    alarm.start()
-    with process:
-        process.stdin.write('{"closed": true}\n{"knock": true, "closed": false}\n')
-        process.stdin.flush()
+def test_changes_of_the_specification_apply_until_ctrl_c(door):
+    """A broken or missing specification is reported, and the previous one stays in use."""
+    with watching("text", stderr=subprocess.STDOUT) as process:
+        write(process, OPENED)
         assert "UTC)  D1#1 P" in process.stdout.readline()
         for text, said in ((DOOR + "requirement", "RV001"), (DOOR + "\n", "has changed")):
             (door / "new.rv").write_text(text)
@@ -231,25 +233,17 @@ def test_a_change_of_the_specification_is_taken_up_and_ctrl_c_is_an_end(door):
             assert any(said in line for line in iter(process.stdout.readline, ""))
         os.replace("door.rv", "gone.rv")
         assert any("previous" in line for line in iter(process.stdout.readline, ""))
-        process.stdin.write('{"knock": true, "closed": false}\n')
-        process.stdin.flush()
+        write(process, '{"knock": true, "closed": false}\n')
         assert any("D1#1" in line for line in iter(process.stdout.readline, ""))
         process.send_signal(signal.SIGINT)
-        rest = process.stdout.read()
-    alarm.cancel()
-    assert "run 2" in rest
+        assert "run 2" in process.stdout.read()
     assert process.returncode == 0
 
 
 @pytest.mark.process
-def test_it_ends_when_nobody_reads_what_it_says(door):
-    command = [sys.executable, "-m", "rvmon", "watch", "door.rv", "--format", "json"]
-    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
-    with subprocess.Popen(command, **pipes) as process:  # noqa: S603
-        alarm = threading.Timer(60, process.kill)
-        alarm.start()
+@pytest.mark.usefixtures("door")
+def test_a_watch_ends_when_its_reader_closes_the_pipe():
+    with watching("json") as process:
         process.stdout.close()
-        process.stdin.write(b'{"closed": true}\n{"knock": true, "closed": false}\n')
-        process.stdin.flush()
+        write(process, OPENED)
         assert process.wait(60) == 141
-        alarm.cancel()

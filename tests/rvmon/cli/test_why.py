@@ -1,4 +1,4 @@
-"""`rvmon why` as a person uses it."""
+"""`rvmon why` shows an attempt: verdict, truth of its parts over time, values."""
 
 import json
 
@@ -17,7 +17,7 @@ requirement D2
 
 @pytest.fixture
 def door(door):
-    """With a recording: D1 passes, fails, stays open."""
+    """A folder with a recording in which D1 passes, fails and stays open."""
     (door / "door.rv").write_text(SPEC)
     (door / "a.csv").write_text("t,closed,knock\n0,1,\n1,,1\n2,0,\n3,1,\n4,,1\n8,,1\n9,,\n")
     return door
@@ -34,7 +34,7 @@ def door(door):
         ("D2", "P", "triggered 2 s, decided 2 s"),
     ],
 )
-def test_attempts_are_shown_with_their_verdict(door, says, named, verdict, when):
+def test_an_attempt_is_shown_with_verdict_and_times(door, says, named, verdict, when):
     lines = says(0, "why", "door.rv", "a.csv", named).out.splitlines()
     assert lines[0].split()[1] == verdict
     assert f"  {when}" in lines
@@ -42,8 +42,8 @@ def test_attempts_are_shown_with_their_verdict(door, says, named, verdict, when)
     assert any(line.strip() == "required" for line in lines)
 
 
-def test_rows_show_truth_over_the_window(put, says):
-    """A second a column: edges, moments, and what is not known in a part of it or wholly."""
+def test_rows_draw_the_truth_of_a_part_over_the_window(put, says):
+    """A column is a second and shows edges, moments, and whether all or some of it is unknown."""
     steps = {0: False, 3: True, 4.5: False, 6.2: True, 6.4: False, 9: True, 12.3: False}
     steps |= {12.6: True, 14.5: False, 14.7: True, 14.9: False, 17.5: None, 20: True, 22.5: None}
     steps |= {25: True, 26.5: False, 30.5: True, 46: True}
@@ -57,7 +57,7 @@ def test_rows_show_truth_over_the_window(put, says):
     assert rows["p"] == "▁▁▁▇╲▁●▁▁▇▇▇○▇╲▁▁???▇▇▇??▇╲▁▁▁╱" + "▇" * 15
 
 
-def test_an_attempt_in_doubt_has_a_name_of_its_own(door, says):
+def test_a_possible_attempt_has_a_name_with_a_question_mark(door, says):
     (door / "a.jsonl").write_text(
         '{"t": 0, "closed": true, "knock": true}\n{"t": 1, "knock": null}\n{"t": 9}\n'
     )
@@ -67,8 +67,8 @@ def test_an_attempt_in_doubt_has_a_name_of_its_own(door, says):
     assert "no attempt D1?2: there are D1#1 to D1?1" in told
 
 
-def test_signals_are_told_as_they_were(put, says):
-    """With unit at the trigger and the end, once where these are one; what is lost is so."""
+def test_values_of_signals_are_shown_at_trigger_and_end(put, says):
+    """Only once if these coincide; a NaN is not known."""
     put(
         "a.rv",
         "spec a\nsignal force : real [N] input\nsignal grip : {open, closed} output\n"
@@ -87,8 +87,8 @@ def test_signals_are_told_as_they_were(put, says):
     assert json.loads(told)["values"] == {"grip": ["open"]}
 
 
-def test_what_was_not_triggered_or_not_decided_says_what_lacked(put, says):
-    """There is no attempt to show, but there is a nearest miss; `--until` is the end."""
+def test_the_missing_condition_or_time_is_named(put, says):
+    """A nearest miss if nothing triggered; the necessary length if nothing was decided."""
     text = "spec s\nsignal a, b : bool\nevent e, f\nrequirement R1\n  upon {}\n"
     put("t.csv", "t,a,b,e,f\n0,false,false,,\n1,,,1,\n3,,,,1\n")
     put("s.rv", text.format("e and a then within 1 s b"))
@@ -100,8 +100,7 @@ def test_what_was_not_triggered_or_not_decided_says_what_lacked(put, says):
 
 
 @pytest.mark.parametrize("rows", range(1, 5))
-def test_a_run_may_be_cut_where_a_block_of_its_recording_ends(put, says, monkeypatch, rows):
-    """Nothing of the next block belongs to it."""
+def test_until_may_fall_on_the_end_of_a_block(put, says, monkeypatch, rows):
     put("s.rv", "spec s\nsignal x : real\nrequirement R1\n  always x < 9\n")
     put("t.csv", "t,x\n" + "".join(f"{t},{t}\n" for t in range(8)))
     asked = ["why", "s.rv", "t.csv", "R1", "--until", "3"]
@@ -110,8 +109,8 @@ def test_a_run_may_be_cut_where_a_block_of_its_recording_ends(put, says, monkeyp
     assert says(0, *asked).out == whole
 
 
-def test_what_a_log_lost_is_known_to_nobody(door, says):
-    """The verdict is that of `rvmon run`, and the rows are not known where the log was dropped."""
+def test_truth_is_unknown_where_a_log_lost_data(door, says):
+    """The verdict is the same as that of `rvmon run`."""
     write_ulog(door / "a.ulg", [(10**6 + 10_000 * k, 1.0, 2) for k in range(100)], [(49, 250)])
     (door / "u.toml").write_text('[bind.speed]\ntopic = "/drive"\nvalue = "speed"\nunit = "m/s"\n')
     (door / "u.rv").write_text(
@@ -130,8 +129,7 @@ def test_what_a_log_lost_is_known_to_nobody(door, says):
     assert second + 5 * second // 10 in lost
 
 
-def test_an_attempt_at_the_end_has_no_row_for_its_trigger(put, says):
-    """`end` is no part that would be true at some instants; `true` as a trigger says nothing."""
+def test_the_triggers_end_and_true_have_no_row(put, says):
     for trigger in ("upon end", "whenever true"):
         text = f"spec a\nsignal p : bool\nrequirement R\n{trigger} then immediately p\n"
         put("a.rv", text)

@@ -1,4 +1,4 @@
-"""What is printed fits the terminal, and the encoding."""
+"""Output fits the width and the encoding of the terminal."""
 
 import io
 import re
@@ -19,7 +19,7 @@ requirement R
 
 
 def underlined(text):
-    """What stands above each underline of carets."""
+    """The text above each line of carets."""
     lines = text.splitlines()
     for above, line in pairwise(lines):
         if set(line.strip(" |")) == {"^"}:
@@ -27,14 +27,12 @@ def underlined(text):
 
 
 @pytest.mark.parametrize("columns", ["40", "80", "200"])
-def test_carets_stand_below_what_they_mean(tmp_path, monkeypatch, capsys, says, columns):
+def test_carets_underline_the_right_part_at_any_width(put, monkeypatch, says, columns):
     monkeypatch.setenv("COLUMNS", columns)
-    main(["run", f"{BASE}.rv", f"{BASE}.csv"])
-    (tmp_path / "wrong.rv").write_text(WRONG)
-    shown = capsys.readouterr().out
+    shown = says(1, "run", f"{BASE}.rv", f"{BASE}.csv").out
     assert next(underlined(shown)) == "speed <= 300 mm/s"
+    put("wrong.rv", WRONG)
     for words in (["check", "wrong.rv"], ["run", "wrong.rv", f"{BASE}.csv"]):
-        monkeypatch.chdir(tmp_path)
         told = says(2, *words).err
         assert list(underlined(told))[-1] == "spede"
         shown += told
@@ -44,15 +42,15 @@ def test_carets_stand_below_what_they_mean(tmp_path, monkeypatch, capsys, says, 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("encoding", ["ascii", "latin-1", "cp1252"])
-def test_signs_that_an_encoding_lacks_are_spelled(monkeypatch, encoding):
-    """An F has no question mark, which is the sign of an I; lines are no longer than they were."""
+def test_signs_missing_from_an_encoding_are_replaced(monkeypatch, encoding):
+    """Never by a question mark, which is the sign of an I; lines keep their length."""
     texts = []
     for encoded in ("utf-8", encoding):
         out = io.TextIOWrapper(io.BytesIO(), encoding=encoded)
         monkeypatch.setattr(sys, "stdout", out)
         assert main(["why", f"{BASE}.rv", f"{BASE}.csv", "B2#2"]) == 0
         texts.append(out.buffer.getvalue().decode(encoded))
-    whole, spelled = texts
-    assert spelled.startswith("B2#2  F  x\n")
-    assert spelled.count("?") == whole.count("?")
-    assert list(map(len, spelled.splitlines())) == list(map(len, whole.splitlines()))
+    original, replaced = texts
+    assert replaced.startswith("B2#2  F  x\n")
+    assert replaced.count("?") == original.count("?")
+    assert list(map(len, replaced.splitlines())) == list(map(len, original.splitlines()))

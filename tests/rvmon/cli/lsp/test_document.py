@@ -1,4 +1,4 @@
-"""What a document answers, without an editor."""
+"""Answers about an open document, asked without an editor."""
 
 import re
 from pathlib import Path
@@ -38,7 +38,7 @@ cross both = phase
 
 
 def document(text, files=MappingProxyType({})):
-    """A document in a folder where these files are open as well."""
+    """A document in a folder with other open files."""
 
     def read(path):
         if path.name in files:
@@ -49,19 +49,19 @@ def document(text, files=MappingProxyType({})):
 
 
 def after(text, words, number=0):
-    """The position behind the first letter of a place, found by what stands there."""
+    """The position after the first letter of an occurrence of words."""
     offset = [found.start() for found in re.finditer(re.escape(words), text)][number]
     return Text(text).position(offset + 1)
 
 
 def about(of, position):
-    """What hovering shows."""
+    """The word and the text shown by hovering."""
     found = hover(of.names, of.compiled.checked, of.place(position))
     return (found[0].text, found[1]) if found else None
 
 
 def offered(text):
-    """What may stand at the end of a text, by what it is."""
+    """The unfinished word at the end of a text, and its completions by kind."""
     of = document(SPEC)
     place = Span(Source("main.rv", SPEC + text), len(SPEC + text), len(SPEC + text))
     word, found = proposals(of.names, place)
@@ -82,8 +82,8 @@ USES = {
 
 
 @pytest.mark.parametrize("place", USES, ids=lambda place: place[0].split()[0])
-def test_names_are_found_where_they_mean_the_same(place):
-    """A label is no event, a unit no signal, a field its event's; from each place to all."""
+def test_all_uses_of_a_name_are_found_from_each_of_them(place):
+    """A label is no event, a unit no signal, and a field belongs to its event."""
     of = document(SPEC)
     expected = {Span(of.source, SPEC.index(words), 0).start for words in USES[place]}
     for words in USES[place]:
@@ -95,7 +95,7 @@ def test_names_are_found_where_they_mean_the_same(place):
         assert definition.range.start == Text(SPEC).position(SPEC.index(place[0]))
 
 
-def test_names_of_other_files():
+def test_definitions_in_other_files_are_found():
     text = 'import "signals.rv"\nimport patterns\nrequirement R\n  bounded_response(a, b, 2 s)\n'
     of = document(text, {"signals.rv": "# unsaved\nevent a, b\n"})
     assert [str(place) for place in of.definitions(after(text, "a, b"))] == [
@@ -111,15 +111,14 @@ def test_names_of_other_files():
     assert len(of.definitions(after(text, "patterns"))) > 1
 
 
-def test_names_in_what_cannot_be_read():
+def test_definitions_are_found_in_a_text_with_errors():
     text = f"{SPEC}requirement R2 upon pick then (within\n"
     of = document(text)
     (place,) = of.definitions(after(text, "pick then"))
     assert place.range == Text(text).range(SPEC.index("pick("), SPEC.index("pick(") + 4)
 
 
-def test_what_is_shown_over_a_name():
-    """What a requirement means, as `rvmon explain` says it; type, unit, role of a signal."""
+def test_hovering_shows_a_requirement_in_words_and_a_declaration():
     of = document(SPEC)
     word, text = about(of, after(SPEC, "R1"))
     assert word == "R1"
@@ -135,8 +134,7 @@ def test_what_is_shown_over_a_name():
     assert [about(of, after(text, "upon a", number)) for number in (0, 1)] == [None, None]
 
 
-def test_words_of_the_language():
-    """Each word has a line, and it stands in the reference; longer words come before shorter."""
+def test_hovering_over_a_word_shows_its_line_in_the_reference():
     page = (ROOT / "docs" / "reference" / "language.md").read_text(encoding="utf-8")
     flat = " ".join(page.replace(" | |", " |").split()).replace(" | ", ": ")
     assert not [line for line in _LINES.values() if line not in flat]
@@ -149,8 +147,7 @@ def test_words_of_the_language():
 
 
 @pytest.mark.slow
-def test_half_written_texts():
-    """Wherever a text ends, or something is missing from it, all questions have an answer."""
+def test_every_request_is_answered_in_unfinished_texts():
     for cut in range(0, len(SPEC), 37):
         for text in (SPEC[:cut], SPEC[:cut] + SPEC[cut + 9 :], f"{SPEC[:cut]}\0({SPEC[cut:]}"):
             of = document(text)
@@ -163,7 +160,7 @@ def test_half_written_texts():
             assert all(0 <= use.start <= use.end <= len(text) for use, _ in of.names.all())
 
 
-def test_findings():
+def test_findings_have_code_place_related_place_and_page():
     text = "event a\nevent a\nconst T = 3 s\nrequirement R upon a then within 2 s a\n"
     of = document(text)
     (double,) = of.diagnostics[of.uri]
@@ -174,11 +171,11 @@ def test_findings():
     page = Path(to_fs_path(double.code_description.href)).read_text(encoding="utf-8")
     assert page == page_of("RV011")
     (unused,) = document(text.replace("event a\n", "", 1)).diagnostics[of.uri]
-    assert unused.tags, "what is not needed is shown so"
+    assert unused.tags, "an unused name is marked as unnecessary"
 
 
-def test_the_page_of_a_code_is_there_once_it_can_be_kept(monkeypatch, tmp_path):
-    """An editor runs for days: what could not be written at first is tried again."""
+def test_the_page_of_a_code_is_written_once_there_is_a_cache(monkeypatch, tmp_path):
+    """An editor runs for days, so a failed attempt is repeated."""
 
     def described():
         of = document("event a\nevent a\nrequirement R upon a then within 2 s a\n")
@@ -192,8 +189,7 @@ def test_the_page_of_a_code_is_there_once_it_can_be_kept(monkeypatch, tmp_path):
 
 
 @pytest.mark.slow
-def test_fixes_mend():
-    """Where a fix is offered, what was found is gone with it; the usual slips have one."""
+def test_a_fix_removes_its_finding():
     mended = set()
     for code in every_rule():
         example = page(code).example
@@ -204,10 +200,11 @@ def test_fixes_mend():
             start, end = of.text.offset(edit.range.start), of.text.offset(edit.range.end)
             better = document(example[:start] + edit.new_text + example[end:])
             (shown,) = fix.diagnostics
-            wrong = [found.code for found in of.compiled.findings]
-            assert [found.code for found in better.compiled.findings].count(shown.code) < (
-                wrong.count(shown.code)
+            before, after = (
+                [finding.code for finding in one.compiled.findings].count(shown.code)
+                for one in (of, better)
             )
+            assert after < before
             mended.add(code)
     assert mended == {"RV012", "RV013", "RV014", "RV023", "RV030", "RV032", "RV045", "RV052"}
     sign = "event a, b\nrequirement R a → b\n"
@@ -234,31 +231,28 @@ OFFERED = {
 
 
 @each("text", OFFERED)
-def test_what_is_offered(text):
+def test_completions_fit_their_place(text):
     word, expected = OFFERED[text]
-    begun, kinds = offered(text)
-    assert begun == word
+    unfinished, kinds = offered(text)
+    assert unfinished == word
     for kind, some in expected.items():
         assert some <= kinds[kind], kinds
 
 
-def test_what_is_not_offered():
-    """No words in comments, texts and new names; no length as a duration; labels alone by `==`."""
-    assert [offered(t)[1] for t in ("signal ", "requirement R # no", 'requirement R "no')] == [
-        {}
-    ] * 3
+def test_completions_that_do_not_fit_are_not_offered():
+    for text in ("signal ", "requirement R # no", 'requirement R "no'):
+        assert offered(text)[1] == {}, text
     assert "mm" not in offered("requirement R upon pick then within 5 m")[1]["unit"]
     assert offered("requirement R always state == ")[1].keys() == {"label"}
     assert "requirement" not in offered("requirement R always s > ")[1]["keyword"]
 
 
 @pytest.mark.slow
-def test_words_that_are_offered_can_stand_there():
-    """By the grammar the text goes on with each word that is offered, or a new item starts."""
+def test_the_grammar_accepts_each_offered_keyword():
     for cut in range(0, len(SPEC), 29):
         text = SPEC[:cut]
-        begun, found = proposals(document(SPEC).names, Span(Source("main.rv", text), cut, cut))
-        before = text[: begun.start]
+        unfinished, found = proposals(document(SPEC).names, Span(Source("main.rv", text), cut, cut))
+        before = text[: unfinished.start]
         start = split_items(before)[-1][0] if split_items(before) else 0
         if not accepted_terminals(grammar(), before[start:], "item")[1]:
             continue

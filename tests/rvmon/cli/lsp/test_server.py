@@ -1,4 +1,4 @@
-"""`rvmon lsp` as editors use it: a process that is talked to by the protocol."""
+"""`rvmon lsp` as an editor uses it: a process that speaks the protocol."""
 
 import asyncio
 import signal
@@ -27,7 +27,7 @@ requirement R
 
 
 class Editor:
-    """An editor with its documents."""
+    """An editor with documents in a folder."""
 
     def __init__(self, client, folder):
         self.client = client
@@ -35,24 +35,24 @@ class Editor:
         self._version = 0
 
     def document(self, name):
-        """What requests call a document."""
+        """The identifier of a document in requests."""
         return lsp.TextDocumentIdentifier((self.folder / name).as_uri())
 
     async def until(self, seen):
-        """Wait for findings; one looks again and again, as they may come before one waits."""
+        """Poll until findings are as expected: a notification may precede the waiting."""
         async with asyncio.timeout(60):
             while not seen():
                 await asyncio.sleep(0.01)
 
     async def open(self, name, text):
-        """Open a document, and give what was found in it, each by code and place."""
+        """Open a document and return its findings as pairs of code and place."""
         item = lsp.TextDocumentItem(self.document(name).uri, "rv", 1, text)
         self.client.text_document_did_open(lsp.DidOpenTextDocumentParams(item))
         await self.until(lambda: item.uri in self.client.diagnostics)
         return self.found(name)
 
     def type(self, name, line, start, end, text):
-        """Put a text in place of some columns."""
+        """Replace some columns of a line."""
         self._version += 1
         where = lsp.Range(lsp.Position(line, start), lsp.Position(line, end))
         document = lsp.VersionedTextDocumentIdentifier(self._version, self.document(name).uri)
@@ -60,14 +60,14 @@ class Editor:
         self.client.text_document_did_change(lsp.DidChangeTextDocumentParams(document, [change]))
 
     def found(self, name):
-        """What was last found in a document."""
+        """The latest findings of a document."""
         found = self.client.diagnostics[self.document(name).uri]
         return [(one.code, str(one.range)) for one in found]
 
 
 @asynccontextmanager
 async def editor(folder, encodings=None):
-    """An editor that is connected to the server, and leaves it as it should be left."""
+    """An editor connected to the server, which is shut down at the end."""
     client = pytest_lsp.make_test_lsp_client()
     await client.start_io(*COMMAND)
     capabilities = pytest_lsp.client_capabilities("visual-studio-code")
@@ -80,7 +80,7 @@ async def editor(folder, encodings=None):
     await client.stop()
 
 
-def test_a_session(tmp_path):
+def test_a_session_of_editing_answers_all_requests(tmp_path):
     async def session():
         async with editor(tmp_path) as of:
             assert await of.open("signals.rv", "event ask\n") == []
@@ -139,8 +139,7 @@ def test_a_session(tmp_path):
     asyncio.run(session())
 
 
-def test_layout_and_another_encoding(tmp_path):
-    """Positions are counted as the editor wants; layout is that of `rvmon format`; saves count."""
+def test_positions_in_utf8_formatting_and_saved_imports(tmp_path):
 
     async def session():
         async with editor(tmp_path, [lsp.PositionEncodingKind.Utf8]) as of:
@@ -165,13 +164,13 @@ def test_layout_and_another_encoding(tmp_path):
 
 
 @pytest.mark.parametrize("ending", [signal.SIGTERM, signal.SIGINT, None])
-def test_the_end_of_the_editor(ending):
+def test_the_server_ends_with_its_editor(ending):
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
     with subprocess.Popen(COMMAND, **pipes) as server:  # noqa: S603 - ours
         body = b'{"jsonrpc":"2.0","id":1,"method":"shutdown"}'
         server.stdin.write(b"Content-Length: %d\r\n\r\n%s" % (len(body), body))
         server.stdin.flush()
-        assert server.stdout.readline().startswith(b"Content-Length"), "it listens"
+        assert server.stdout.readline().startswith(b"Content-Length"), "the server is up"
         if ending is None:
             server.stdin.close()
         else:
@@ -179,7 +178,7 @@ def test_the_end_of_the_editor(ending):
         assert server.wait(30) == (0 if ending is None else -ending)
 
 
-def test_without_pygls(monkeypatch, says):
+def test_a_missing_pygls_is_reported_with_the_command_that_installs_it(monkeypatch, says):
     monkeypatch.setitem(sys.modules, "pygls.lsp.server", None)
     monkeypatch.delitem(sys.modules, "rvmon.cli.lsp.server", raising=False)
     assert "pip install 'rvmon[lsp]'" in says(2, "lsp").err

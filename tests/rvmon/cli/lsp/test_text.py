@@ -1,4 +1,4 @@
-"""Positions as an editor counts them, and edits at them."""
+"""Positions as editors count them, and edits at such positions."""
 
 import re
 
@@ -24,14 +24,16 @@ LINES = st.lists(st.tuples(TEXTS, st.sampled_from(["\n", "\r\n", "\r"])), max_si
 
 
 def position(text, offset, encoding):
-    """Line and column by the letter of the protocol."""
+    """Line and column as the protocol defines them."""
     lines = re.split(r"\r\n|\r|\n", text[:offset])
     return Position(len(lines) - 1, UNITS[encoding](lines[-1]))
 
 
 @pytest.mark.slow
 @given(LINES, TEXTS, TEXTS, st.sampled_from(sorted(UNITS)), st.data())
-def test_edits_fall_where_the_editor_means(lines, last, new, encoding, data):
+def test_ranges_and_edits_agree_with_the_definition_of_the_protocol(
+    lines, last, new, encoding, data
+):
     raw = "".join(map("".join, lines)) + last
     places = [n for n in range(len(raw) + 1) if raw[max(n - 1, 0) : n + 1] != "\r\n"]
     start, end = sorted(data.draw(st.tuples(st.sampled_from(places), st.sampled_from(places))))
@@ -44,9 +46,8 @@ def test_edits_fall_where_the_editor_means(lines, last, new, encoding, data):
     assert edited.changed(TextDocumentContentChangeWholeDocument(raw)).raw == raw
 
 
-def test_positions_out_of_range():
-    """Behind the end of a line is its end, behind the last line the end of the text."""
+def test_positions_out_of_range_are_the_end_of_line_or_text():
     text = Text("a\r\nb😋\nc")
     assert [text.offset(Position(0, 9)), text.offset(Position(1, 9))] == [1, 5]
     assert text.offset(Position(7, 0)) == len(text.raw)
-    assert text.offset(Position(1, 2)) == 4, "within a character is before it"
+    assert text.offset(Position(1, 2)) == 4, "a position within a character is before it"
