@@ -35,7 +35,7 @@ check: $(VENV)/.dev $(VENV)/.docs  ## lint, types, layers, C by gcc and clang, t
 	@$(BIN)/python .ci/lint_c.py $(WARNINGS)
 	@$(BIN)/python -m sphinx -W --keep-going -q docs out/docs
 
-sanitize: $(VENV)/.dev  ## run the tests of the native core under AddressSanitizer and UBSan
+sanitize: $(VENV)/.dev  ## run the tests of the native code under AddressSanitizer and UBSan
 	@$(BIN)/python -m fuzz.sanitize
 
 docs: $(VENV)/.docs  ## make the documentation site, without warnings: out/docs/index.html

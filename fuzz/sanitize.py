@@ -1,6 +1,6 @@
 """Run the tests of the native code under AddressSanitizer and UBSan (only with gcc).
 
-The extension is built in a copy of the package, so the installed one stays unchanged. In the copy
+The extensions are built in a copy of the package, so the installed ones stay unchanged. In the copy
 each block of a monitor's memory is allocated separately, so that accesses beyond it are detected.
 Leaks are not checked: Python itself leaves memory unfreed, and tests check what the core frees.
 """
@@ -19,9 +19,17 @@ GROWN = "void *widened("
 MEMORY = "src/rvmon/core/native/memory.c"
 FLAGS = "-g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all"
 # The tests also cover our own declarations of the C API. Memory comes from malloc, which guards
-# each block; Python's pools would hide an overrun, and all of Python without pools is slow.
+# each block; Python's pools would hide an overrun.
 FLAGS += " -DRVMON_OWN_PYTHON_H -DPyMem_Malloc=malloc -DPyMem_Calloc=calloc"
 FLAGS += " -DPyMem_Realloc=realloc -DPyMem_Free=free -DGUARDED_MOST=SIZE_MAX"
+
+CSV = ("csv_batch", "csv_dialect", "csv_text", "doors", "stamps")
+TESTS = {
+    "pymalloc": ("core", "models/search"),
+    "malloc": ("native", *(f"recordings/test_{name}.py" for name in CSV), "recordings/starter"),
+}
+"""Folders and files of tests by the allocator of Python. The text of a CSV file is a Python object,
+so its reader is tested without pools. The others would take twice as long without."""
 
 
 def guarded_memory() -> str:
@@ -57,10 +65,14 @@ def main() -> int:
     tests = [
         *(sys.executable, "-m", "pytest", "-n", "auto", "-m", "not compiler"),
         # Capture only what Python prints: a sanitizer report ends the process and must be visible.
-        *("--capture=sys", "--deselect", stated, "tests/rvmon/core", "tests/rvmon/models/search"),
-        *sys.argv[1:],
+        *("--capture=sys", "--deselect", stated, *sys.argv[1:]),
     ]
-    return subprocess.run(tests, cwd=ROOT, env=environment, check=False).returncode
+    code = 0
+    for allocator, own in TESTS.items():
+        line = [*tests, *(f"tests/rvmon/{name}" for name in own)]
+        environment["PYTHONMALLOC"] = allocator
+        code |= subprocess.run(line, cwd=ROOT, env=environment, check=False).returncode
+    return code
 
 
 def _library(name: str) -> str:

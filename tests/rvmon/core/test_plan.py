@@ -31,6 +31,7 @@ from rvmon.core.nodes import NodeOp
 from rvmon.core.obligations import Measure, Operator
 from rvmon.core.pack import pack
 from rvmon.core.sections import Packed, Section
+from rvmon.coverage.monitor import Bins
 from rvmon.errors import RvmonError
 from rvmon.logic.plan import Plan as Planned
 from rvmon.monitor.compiled_spec import CompiledSpec
@@ -261,6 +262,20 @@ def test_values_are_captured_by_one_part_for_each_requirement(check):
     assert struct.unpack_from("=i", data, last) == (1,)
     for number, wrong in ((1, -1), (0, Section.PARTS), (2, Section.PARTS)):
         assert check(with_numbers(data, {last: number})) == wrong
+
+
+@pytest.mark.compiler
+def test_a_watch_that_its_node_does_not_tell_is_refused(check):
+    """It would keep the truth that it had when a snapshot was read."""
+    data = pack(Bins(rvmon.loads(COUNTED).checked).plan).data
+    plan = Plan(data)
+    links = [link for link in plan.records["LINKS"] if link["kind"] == 8]
+    assert sorted(link["judge"] for link in links) == [0, 1]
+    first, end = plan.places[Section.LINKS]
+    assert check(data) == -1
+    for at in range(first, end, Section.LINKS.record.size):
+        (number,) = struct.unpack_from("=i", data, at)
+        assert check(with_numbers(data, {at: 1 - number})) == Section.NODES
 
 
 @pytest.mark.compiler

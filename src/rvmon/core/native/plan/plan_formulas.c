@@ -191,18 +191,29 @@ static bool check_weights(const plan *p, const part_plan *x, const link_plan *l)
     return true;
 }
 
-static bool check_links(const plan *p, const part_plan *x, list links)
+/* Check the links of a node. Those to its watches ascend and add to `*watched`, so that each watch of
+ * the part turns out to be linked once. */
+static bool check_links(const plan *p, const part_plan *x, int32_t node, list links, int32_t *watched)
 {
+    int32_t last = -1;
     int32_t i;
     if (!has(p, SEC_LINKS, links.first, links.count)) {
         return false;
     }
     for (i = links.first; i < links.first + links.count; i++) {
         const link_plan *l = &p->links[i];
-        const bool watches = l->kind == LINK_WATCH;
-        if (!is_within(l->judge, 0, watches ? x->watches.count : x->judges.count)
-            || (!watches && (((l->kind & LINK_WATCH) != 0) || !check_weights(p, x, l)))) {
+        if (l->kind == LINK_WATCH) {
+            if (!is_within(l->judge, (int64_t)last + 1, x->watches.count)
+                || (p->watches[x->watches.first + l->judge].node != node)) {
+                return false;
+            }
+            last = l->judge;
+            *watched += 1;
+        } else if (!is_within(l->judge, 0, x->judges.count) || ((l->kind & LINK_WATCH) != 0)
+                   || !check_weights(p, x, l)) {
             return false;
+        } else {
+            /* A link to a judge. */
         }
     }
     return true;
@@ -259,12 +270,13 @@ static bool check_window(const plan *p, const part_plan *x, const node_plan *n)
 bool check_nodes(const plan *p, const part_plan *x)
 {
     int32_t timed_nodes = 0;
+    int32_t watched = 0;
     int32_t i;
     for (i = 0; i < x->nodes.count; i++) {
         const node_plan *n = &p->nodes[x->nodes.first + i];
         if (!is_within(n->op, 0, NODES) || !check_operands(p, x, n, i)
             || !check_memory(x, n, &timed_nodes) || !both(p, n->parents, (int64_t)i + 1, x->nodes.count)
-            || !check_links(p, x, n->links) || (n->low < 0) || (n->high < 0)
+            || !check_links(p, x, i, n->links, &watched) || (n->low < 0) || (n->high < 0)
             || ((n->op == NODE_LEAF)
                 && (!is_within(n->a, 0, x->atoms.count) || !is_within(n->b, 0, 3)))
             || ((n->op == NODE_CONSTANT) && !is_within(n->a, 0, 3))
@@ -279,7 +291,7 @@ bool check_nodes(const plan *p, const part_plan *x)
             return false;
         }
     }
-    return timed_nodes == x->timers;
+    return (timed_nodes == x->timers) && (watched == x->watches.count);
 }
 
 /* Margins. */
