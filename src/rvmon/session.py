@@ -353,9 +353,9 @@ def load(
         SpecError: the file cannot be read or has errors; contains all diagnostics, rendered.
     """
     path = Path(path)
-    if path.suffix != ".rv" and path.suffix.lower() in FORMATS:
-        expected = "a recording by its name; a specification (.rv) is expected here"
-        raise SpecError((), f"error: {path}: {expected}")
+    what = "a folder" if path.is_dir() else "a recording by its name"
+    if path.suffix != ".rv" and (path.is_dir() or path.suffix.lower() in FORMATS):
+        raise SpecError((), f"error: {path}: {what}; a specification (.rv) is expected here")
     try:
         text = text_of_file(path)
     except (OSError, UnicodeDecodeError) as error:

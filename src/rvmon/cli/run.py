@@ -219,7 +219,8 @@ def _show(arguments: argparse.Namespace, spec: Spec, judged: Sequence[evaluation
     from rvmon.report.run_text import print_reports
 
     reports = [result.report for result in judged if result.report is not None]
-    print_reports(reports, spec.checked, counts_only=arguments.quiet)
+    broken = len(judged) - len(reports)
+    print_reports(reports, spec.checked, counts_only=arguments.quiet, broken=broken)
 
 
 def _show_known(known: KnownFailures, reports: Sequence[Report]) -> None:

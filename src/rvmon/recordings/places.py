@@ -331,7 +331,12 @@ def _recordings_at(path: str, above: frozenset[str] = frozenset()) -> Iterator[s
         yield path
     elif os.path.isdir(path):
         if (real := os.path.realpath(path)) not in above:
-            for name in os.listdir(path):
+            try:
+                names = os.listdir(path)
+            except OSError:
+                yield path  # reading it reports why
+                return
+            for name in names:
                 yield from _recordings_at(str(Path(path, name)), above | {real})
     else:
         stem, ending = os.path.splitext(path)

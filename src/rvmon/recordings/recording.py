@@ -8,7 +8,6 @@ from collections import Counter, deque
 from collections.abc import Generator, Iterator, Sequence
 from contextlib import AbstractContextManager, closing, nullcontext
 from dataclasses import replace
-from errno import ENOENT
 from itertools import islice
 from math import inf
 from pathlib import Path
@@ -22,7 +21,6 @@ from rvmon.recordings.csv_rows import Layout, read_layout
 from rvmon.recordings.csv_text import CsvText
 from rvmon.recordings.joined import Joined, schemas_of
 from rvmon.recordings.rows import LOOKED_AT, Row, Rows, doubt_unit
-from rvmon.texts import cannot_read
 from rvmon.trace.sample import Health, HealthKind, Outage, Sample
 from rvmon.trace.schema import BY_NAME, Schema, Stamps
 from rvmon.trace.stamps import stamps_of
@@ -347,6 +345,16 @@ def can_be_read_again(path: str) -> bool:
         return True
 
 
+_INSTEAD = {
+    ".rv": "it is a specification, and a recording is expected here",
+    ".yaml": "a ROS 2 bag is named by its folder",
+    ".json": "write an object per line, to a .jsonl file",
+    ".xlsx": "export it as .csv",
+    **dict.fromkeys((".txt", ".tsv", ".dat"), "name a table of text .csv; its separator is found"),
+}
+"""The fix, by the ending of a file that is not a recording."""
+
+
 def format_of(path: str) -> str:
     """The format of a recording by its path.
 
@@ -362,14 +370,15 @@ def format_of(path: str) -> str:
     if places.is_address(path) and path.endswith("/"):
         return "ros2"
     suffix, packed = places.endings_of(path)
-    if suffix not in FORMATS and not (places.is_address(path) or Path(path).exists()):
-        raise TraceError(cannot_read(path, FileNotFoundError(ENOENT, os.strerror(ENOENT))))
+    if suffix not in FORMATS and not places.is_address(path):
+        with places.named_errors(path):
+            os.listdir(path) if os.path.isdir(path) else os.stat(path)
     if suffix not in FORMATS:
-        known = ", ".join(FORMATS)
         ending = (
             f"the ending `{suffix}` is not a known format" if suffix else "the name has no ending"
         )
-        raise TraceError(f"{path}: {ending}: use one of {known}")
+        fix = _INSTEAD.get(suffix, f"use one of {', '.join(FORMATS)}")
+        raise TraceError(f"{path}: {ending}: {fix}")
     if packed and FORMATS[suffix] not in ("csv", "jsonl"):
         raise TraceError(f"{path}: only text is read packed: unpack it first")
     return FORMATS[suffix]

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from msgspec import Struct
 
-from rvmon.files import output_folder, write_whole
+from rvmon.files import output_folder, write_file
 from rvmon.language.checked.specification import CheckedSpec, Requirement
 from rvmon.report.attempt_panels import JudgedRun, RunPage
 from rvmon.report.html import render
@@ -184,7 +184,7 @@ def write_run_pages(
             back_to="all recordings",
         )
         path = folder / name
-        write_whole(path, run_page(content))
+        write_file(path, run_page(content))
         written.append(path)
     if several:
         path = folder / INDEX
@@ -193,7 +193,7 @@ def write_run_pages(
             for report, name in zip(reports, names, strict=True)
         ]
         listed += [Listed(_shown(trace), "", None, error) for trace, error in broken]
-        write_whole(path, run_index(spec, listed, known))
+        write_file(path, run_index(spec, listed, known))
         written.append(path)
     return written
 

@@ -59,17 +59,19 @@ def coverage_lines(groups: Sequence[CoveredGroup]) -> Iterator[str]:
 
 
 def print_reports(
-    reports: Sequence[Report], spec: CheckedSpec, *, counts_only: bool = False
+    reports: Sequence[Report], spec: CheckedSpec, *, counts_only: bool = False, broken: int = 0
 ) -> None:
     """Print the verdicts on each recording; for several recordings, also the counts of verdicts.
 
     Every F is shown with cause, window and line of the specification, every I with its obligation.
+    `broken` further recordings could not be evaluated.
     """
     printer = Printer()
     for report in () if counts_only else reports:
         print_report(report, spec, printer)
-    if len(reports) > 1 or (reports and counts_only):
-        printer.line((counted(len(reports), "recording"), "italic"))
+    if reports and (len(reports) + broken > 1 or counts_only):
+        rest = f", {broken} cannot be evaluated" if broken else ""
+        printer.line((f"{counted(len(reports) + broken, 'recording')}{rest}", "italic"))
         _print_counts(reports, printer)
         for name in reports[0].goals:
             count = sum(report.goals[name] is Verdict.PASS for report in reports)

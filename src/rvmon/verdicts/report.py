@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _ATTEMPT_VERDICTS = (Verdict.PASS, Verdict.FAIL, Verdict.INCONCLUSIVE)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Report:
     """All verdicts on one run; made by `report_of`.
 
@@ -75,6 +75,11 @@ class Report:
 
     _repr_html_: ClassVar[Callable[[Report], str]]
     """HTML for notebooks; set by `rvmon.session`, because `report` is a layer above this one."""
+
+    def __repr__(self) -> str:
+        verdicts = ", ".join(f"{name} {verdict}" for name, verdict in self.verdicts.items())
+        of = f" of {self.trace}" if self.trace else ""
+        return f"<Report{of}: {verdicts}>"
 
     @property
     def absent(self) -> frozenset[str]:

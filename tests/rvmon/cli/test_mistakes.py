@@ -169,6 +169,7 @@ MISTAKES = {
         ("P.csv door.rv -o link.rv", "link.rv: it is an input: name another"),
     ],
     "run": [
+        ("bag P.csv", "bag: a folder; a specification (.rv) is expected here"),
         ("door.rv", "rvmon run examples/base.rv examples/base.csv\n"),
         ("door.rv P.csv --repot out", "did you mean `--report`?"),
         ("door.rv P.csv --bogus", "unrecognized arguments: --bogus\n"),

@@ -115,6 +115,13 @@ def test_shards_are_joined_and_missing_or_broken_results_evaluated(folder, says)
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("also", [[], ["bad.csv"]])
+def test_recordings_that_cannot_be_evaluated_are_counted(folder, says, also):
+    words = ["run", "s.rv", "good.csv", "cut.csv", *also]
+    assert f"{2 + len(also)} recordings, 1 cannot be evaluated\n" in says(2, *words).out
+
+
+@pytest.mark.slow
 def test_results_of_another_specification_are_refused(folder, says):
     words = ["run", "s.rv", "good.csv", "bad.csv", "--out", "v.csv"]
     assert main([*words, "--shard", "2/2"]) == 1

@@ -2,6 +2,8 @@
 
 import gzip
 import http.server
+import os
+from errno import EACCES
 from functools import partial
 from pathlib import Path
 from threading import Thread
@@ -104,6 +106,39 @@ def test_a_folder_leaves_out_no_recording_in_silence(tmp_path, spec):
     for path in found[:2]:
         with pytest.raises(TraceError, match="use one of"):
             spec.evaluate(path)
+
+
+def test_a_folder_that_cannot_be_listed_is_told(tmp_path, spec, monkeypatch):
+    for name in ("a.csv", "closed/b.csv"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("t,x\n0,1\n")
+    real = os.listdir
+
+    def refuse(path):
+        if Path(path).name == "closed":
+            raise PermissionError(EACCES, "Permission denied", str(path))
+        return real(path)
+
+    monkeypatch.setattr(os, "listdir", refuse)  # whoever runs the tests may list every folder
+    found = list(found_recordings([str(tmp_path)]))
+    assert found == [str(tmp_path / "a.csv"), str(tmp_path / "closed")]
+    with pytest.raises(TraceError, match=r"closed: Permission denied"):
+        spec.evaluate(found[1])
+
+
+@pytest.mark.parametrize(
+    ("name", "fix"),
+    [
+        ("b.rv", "it is a specification, and a recording is expected here"),
+        ("metadata.yaml", "a ROS 2 bag is named by its folder"),
+        ("a.json", "an object per line, to a .jsonl file"),
+        ("a.tsv", "name a table of text .csv"),
+    ],
+)
+def test_a_file_that_is_no_recording_is_told_with_the_fix(tmp_path, spec, name, fix):
+    (tmp_path / name).touch()
+    with pytest.raises(TraceError, match=fix):
+        spec.evaluate(tmp_path / name)
 
 
 def test_a_folder_that_links_to_one_above_is_looked_through_once(tmp_path):

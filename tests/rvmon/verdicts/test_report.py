@@ -107,3 +107,10 @@ DROPPED = [
 def test_what_is_no_report_is_refused(text: str | bytes) -> None:
     with pytest.raises(TraceError):
         Report.from_json(text)
+
+
+def test_a_report_shows_its_verdicts():
+    passed = Attempt("R1", 1, 0, 5, Verdict.PASS)
+    report = report_of(["R1", "R2"], [passed], trace="a.csv")
+    assert repr(report) == "<Report of a.csv: R1 P, R2 NT>"
+    assert str(replace(report, trace="")) == "<Report: R1 P, R2 NT>"

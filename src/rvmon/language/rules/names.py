@@ -53,7 +53,8 @@ double = Breach(DOUBLE_NAME, "{2} `{1}` is declared twice", "rename one of them"
 
 def unknown(span: Span, name: str, close: str) -> Diagnostic:
     """An undeclared name; `close` describes a similar declared name, or is empty."""
-    fix = close or f"declare it, as `signal {name} : bool` or `event {name}`"
+    declared = f"`signal {name} : bool`, `signal {name} : real [m]` or `event {name}`"
+    fix = close or f"declare it, as {declared}"
     return finding(UNKNOWN_NAME, f"no signal or event named `{name}`", span, fix=fix)
 
 

@@ -97,7 +97,7 @@ _LIKELY: _Rows = (
     ),
     (
         rf"\Arequirement\s+\0({'|'.join(NAMELESS)})\0",
-        *("", "its name comes first: `requirement R1 {0} …`"),
+        *("", "its name comes first, and `{0}` is not one: `requirement R1 {0} …`"),
     ),
     (r"\0let\0|(?<![\w.])let[ \t]+\0[^\0]", "", _LET),
     (
@@ -117,6 +117,7 @@ _LIKELY: _Rows = (
         r"(?<![\w.])(?:after|at)[ \t]+\0([\d.]+\s*[^\W\d]+)\0",
         *("", "for a condition at that instant write `eventually[{0}, {0}] (…)`"),
     ),
+    (r"\Aevent\b[^\0]*\0\{\0", "", "fields stand in round brackets, as in `event pick(id: int)`"),
     (r"\Aevent\b", "COLON", "a field has a type, as in `event pick(id: int)`"),
 )
 _TYPES = {

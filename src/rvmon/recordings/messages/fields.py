@@ -73,6 +73,15 @@ def kind_of(field: Field | Elements, topic: Topic) -> Kind | None:
     raise TraceError(f"{where} has no field `{field}`: {meant}")
 
 
+def refuse_whole(topic: Topic) -> None:
+    """Refuse a topic as the value of a signal, if it has fields to choose from."""
+    own = [leaf for leaf in topic.leaves if not leaf.startswith("header.")]
+    if own:
+        raise TraceError(
+            f"topic {topic.name} ({topic.type}) is a message: name a field of it: {_listed(own)}"
+        )
+
+
 def _listed(leaves: list[str]) -> str:
     more = f" and {len(leaves) - _SHOWN} more" if len(leaves) > _SHOWN else ""
     return ", ".join(f"`{leaf}`" for leaf in leaves[:_SHOWN]) + more

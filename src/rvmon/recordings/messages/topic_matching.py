@@ -10,7 +10,12 @@ from msgspec.structs import replace
 from rvmon.errors import TraceError
 from rvmon.recordings.messages import Topic
 from rvmon.recordings.messages.field_meanings import expect_units, plain_type
-from rvmon.recordings.messages.fields import arrays_with_names, expect_kinds, field_of
+from rvmon.recordings.messages.fields import (
+    arrays_with_names,
+    expect_kinds,
+    field_of,
+    refuse_whole,
+)
 from rvmon.trace.schema import Bound, Field, Kind, Schema, Term
 
 
@@ -94,6 +99,8 @@ def _by_name(
         found = next((place for one, place in columns.items() if dotted(one) == name), None)
         found = found or _element(name, topics)
     if name in schema.signals:
+        if name in schema.columns and found is not None and found[1] is None:
+            refuse_whole(topics[found[0]])
         return None if found is None or found[1] is None else Bound(*found)
     payload = schema.events[name]
     fields: dict[str, Term] = {}

@@ -164,6 +164,13 @@ def test_a_field_that_does_not_fit_is_told(tmp_path, declared, column, message):
         spec.evaluate(path, columns={"x": column})
 
 
+def test_a_topic_of_several_fields_is_no_signal(tmp_path, spec):
+    sent = [("/speed", START, {"now": 0.5, "wanted": 1.0})]
+    path = write_json_mcap(tmp_path / "a.mcap", sent)
+    with pytest.raises(rvmon.TraceError, match="is a message: name a field of it: `now"):
+        spec.evaluate(path, columns={"speed": "/speed"})
+
+
 def test_a_recording_without_messages_is_told(tmp_path, spec):
     write_ros1(tmp_path / "a.bag", [])
     with pytest.raises(rvmon.TraceError, match="there is no topic"):
