@@ -1,7 +1,7 @@
-"""Random runs that lose something at a door: what are their verdicts worth then?
+"""Random runs that lose samples on input, and a check of their verdicts against the law.
 
-The doors are a pipe of lines, `Live` and `DurableMonitor`. What files refuse, and how brokers and
-middleware notice what they lose, their tests show; all of them tell the same driver.
+An input ("door") is a pipe of lines, `Live` or `DurableMonitor`. Brokers and middleware report
+their losses to the same driver and have tests of their own.
 """
 
 import itertools
@@ -30,32 +30,32 @@ from rvmon.trace.sample import Sample
 from rvmon.verdicts import Verdict
 
 FILLINGS = 6
-"""So many times what was lost is filled in: once by what it really was."""
+"""How often the lost values are replaced, the first time by the true values."""
 
 EACH = 4
 """Runs of a specification."""
 
 GREEN = (Verdict.PASS, Verdict.NOT_TRIGGERED)
 START = 1_000
-"""Ticks by which runs are later than they are drawn: no format has stamps below zero."""
+"""Ticks added to all stamps, because no format has negative stamps."""
 
 Verdicts = Mapping[str, Verdict]
 
 
 @dataclass(slots=True)
 class Trial:
-    """A run, and its samples that are to be lost at a door."""
+    """A run with a stretch of samples to be lost at a door."""
 
-    name: str  # of the run; every draw comes of it
-    spec: Spec  # what judges
-    case: Case  # the run as it truly was
-    lost: range  # the places of the samples that are lost, which follow one another
+    name: str  # seed of every draw
+    spec: Spec
+    case: Case  # the true run
+    lost: range  # indices of the lost samples
     folder: Path  # for files
-    rng: random.Random = field(init=False)  # draws how they are lost
-    names: list[str] = field(init=False)  # what the lost samples spoke of
-    # set by a door at which they came too late: a failure may stay that was none
+    rng: random.Random = field(init=False)  # draws how the samples are lost
+    names: list[str] = field(init=False)  # names in the lost samples
+    # set by a door if the samples came too late, so that a false alarm may remain
     is_late: bool = False
-    is_named: bool = False  # set by a door that knows of each lost sample what it spoke of
+    is_named: bool = False  # set by a door that knows the names in each lost sample
 
     def __post_init__(self) -> None:
         self.rng = random.Random(f"{self.name} door")
@@ -63,26 +63,26 @@ class Trial:
 
     @property
     def end(self) -> int:
-        """An instant behind all samples."""
+        """An instant after all samples."""
         return self.case.samples[-1].t + 1
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What came of a trial."""
+    """The result of a trial."""
 
     name: str  # of the trial
-    # the requirements whose verdict some filling turns that no filling may
+    # requirements with a verdict that some replacement of the lost values contradicts
     overturned: tuple[str, ...]
-    is_split: bool  # whether fillings turn a verdict
+    is_split: bool  # whether verdicts depend on the lost values
 
 
 Door = Callable[[Trial], Verdicts]
-"""What loses something of a trial, and gives verdicts."""
+"""An input that loses samples of a trial and returns verdicts."""
 
 
 def trials(door: str, seed: object, folder: Path) -> Iterator[Trial]:
-    """Trials whose loss changes a letter that a requirement reads, without end."""
+    """Endless trials whose loss changes a letter that a requirement reads."""
     traces = TraceProfile(advances=False)
     for number in itertools.count():
         spec = None
@@ -93,7 +93,7 @@ def trials(door: str, seed: object, folder: Path) -> Iterator[Trial]:
                 continue
             name = f"{door}/{seed}/{number}/{part}"
             rng = random.Random(name)
-            # Of the first and the last nobody may know that there was one.
+            # The first and the last sample are kept: their loss might go unnoticed.
             begin = rng.randrange(1, len(case.samples) - 1)
             lost = range(begin, min(begin + rng.randint(1, 6), len(case.samples) - 1))
             trial = Trial(name, spec, case, lost, folder / f"{number}.{part}")
@@ -103,15 +103,13 @@ def trials(door: str, seed: object, folder: Path) -> Iterator[Trial]:
 
 
 def _plain(case: Case) -> Case:
-    """The samples of a case, later, but for those that say nothing, or that events do not occur."""
+    """A case with later stamps, without empty samples and reports that an event did not occur."""
+    signals = case.spec.signals
     samples = [
-        Sample(
-            START + one.t,
-            {n: v for n, v in one.values.items() if n in case.spec.signals or v is not False},
-        )
-        for one in case.samples
+        Sample(START + t, {n: v for n, v in values.items() if n in signals or v is not False})
+        for t, values in ((sample.t, sample.values) for sample in case.samples)
     ]
-    return replace(case, actions=tuple(one for one in samples if one.values), end=None)
+    return replace(case, actions=tuple(sample for sample in samples if sample.values), end=None)
 
 
 def _changes_a_letter(trial: Trial) -> bool:
@@ -124,7 +122,7 @@ def _changes_a_letter(trial: Trial) -> bool:
 
 
 def outcome(trial: Trial, verdicts: Verdicts) -> Outcome:
-    """Hold the verdicts of a door against those of the law, however what was lost is filled in."""
+    """Compare the verdicts of a door with the law for several replacements of the lost values."""
     rng = random.Random(f"{trial.name} fillings")
     case = narrowed(trial.case)
     seen: dict[str, set[bool]] = {name: set() for name in case.spec.requirements}
@@ -132,7 +130,7 @@ def outcome(trial: Trial, verdicts: Verdicts) -> Outcome:
     for which in range(FILLINGS):
         filled = case if which == 0 else _filled(rng, trial, case)
         truly = judge(replace(filled, actions=(*filled.actions, trial.end))).verdicts
-        # What was lost before a first value may have been one, and is no excuse (section 1).
+        # A lost sample may have held the first value of a signal, so it is no excuse (section 1).
         born = all(_has_value(filled, trial, name) for name in trial.names)
         for name, verdict in verdicts.items():
             failed = truly[name] is Verdict.FAIL
@@ -147,57 +145,57 @@ def outcome(trial: Trial, verdicts: Verdicts) -> Outcome:
 
 
 def _has_value(case: Case, trial: Trial, name: str) -> bool:
-    """Whether a name has had a value when the loss is over; events need none."""
-    told = case.samples[: trial.lost.stop]
-    values = (one.values[name] for one in told if name in one.values)
+    """Whether a name has had a value at the end of the loss; always true for events."""
+    known = case.samples[: trial.lost.stop]
+    values = (sample.values[name] for sample in known if name in sample.values)
     return name in case.spec.events or any(value is not None and value == value for value in values)
 
 
 def _filled(rng: random.Random, trial: Trial, case: Case) -> Case:
-    """The case of a trial with something else in place of what was lost."""
+    """The case of a trial with random values in place of the lost ones."""
     samples = list(case.samples)
     names = {*trial.names}
     others: Any = random_trace(rng, case.spec, TraceProfile()).samples or samples
     for place in trial.lost:
-        told = samples[place].values
-        heard = {n: v for n, v in told.items() if n not in names}
-        may = names & told.keys() if trial.is_named else names
-        values = {n: v for n, v in rng.choice(others).values.items() if n in may}
-        samples[place] = Sample(samples[place].t, heard | values)
+        true = samples[place].values
+        kept = {n: v for n, v in true.items() if n not in names}
+        replaced = names & true.keys() if trial.is_named else names
+        values = {n: v for n, v in rng.choice(others).values.items() if n in replaced}
+        samples[place] = Sample(samples[place].t, kept | values)
     return replace(case, actions=tuple(samples))
 
 
 def outcomes(name: str, door: Door, count: int, seed: object, folder: Path) -> Iterator[Outcome]:
-    """What comes of so many trials at a door."""
+    """The results of `count` trials at a door."""
     for trial in islice(trials(name, seed, folder), count):
         yield outcome(trial, door(trial))
         shutil.rmtree(trial.folder)
 
 
 def _object_of(sample: Sample) -> bytes:
-    """A sample as JSON has it."""
+    """A sample as a JSON object."""
     values = {n: [*v] if isinstance(v, tuple) else v for n, v in sample.values.items()}
     return json.dumps({"t_ns": sample.t, **values}).encode()
 
 
 def _damaged(rng: Random, line: bytes) -> bytes:
-    """A line, or object, of which nobody can say what it held."""
+    """A line with unknowable content: cut, or replaced by something unusable."""
     half = line[: rng.randrange(1, len(line) - 1)]
     large = line.replace(b": ", b': 1e400, "t_ns": ', 1)
     return rng.choice([half, line[:-1] + b',"q":1,"q":1}', large, b"\xff", b"[]", b'"on"'])
 
 
 def _closed(driver: Driver, clock: SimulatedClock, trial: Trial) -> Verdicts:
-    """The verdicts when all was offered, and a tick is over."""
+    """The verdicts one tick after the last sample."""
     clock.set_ns(max(clock.now_ns(), trial.end))
     return driver.close()[""][-1].verdicts
 
 
 def _stdin(trial: Trial) -> Verdicts:
-    """Lines that are damaged, come late, or are cut from inside of one to inside of another."""
+    """Lines that are damaged, late, or missing but for the start of the first."""
     rng, clock = trial.rng, SimulatedClock(trial.case.samples[0].t)
     driver = Driver(trial.spec, clock=clock, sources=trial.case.names)
-    lines = [_object_of(one) for one in trial.case.samples]
+    lines = [_object_of(sample) for sample in trial.case.samples]
     lost = [lines[place] for place in trial.lost]
     kept = [line for place, line in enumerate(lines) if place not in trial.lost]
     place = trial.lost.start
@@ -215,7 +213,7 @@ def _stdin(trial: Trial) -> Verdicts:
 
 
 def _live(trial: Trial) -> Verdicts:
-    """A source that is down, samples that come late, are too many, or are refused."""
+    """A source that is down, or samples that are late, too many or refused."""
     how = trial.rng.choice((_down, _late, _flood, _refused))
     clock = SimulatedClock(trial.case.samples[0].t)
     with Live(trial.spec, clock=clock, sources=trial.case.names) as driver:
@@ -242,7 +240,7 @@ def _down(trial: Trial, driver: Driver, clock: SimulatedClock) -> None:
         if place not in trial.lost:
             driver.offer(sample.values, t_ns=sample.t)
         elif place == trial.lost[-1]:
-            if not is_heard_at_once:  # what it meant for what was judged is told later
+            if not is_heard_at_once:  # the loss is noticed only at its end
                 driver.lose(names, robot="", since_ns=since)
             driver.found()
         if trial.rng.random() < 0.3:
@@ -259,7 +257,7 @@ def _late(trial: Trial, driver: Driver, clock: SimulatedClock) -> None:
 
 
 def _flood(trial: Trial, driver: Driver, clock: SimulatedClock) -> None:
-    """The lost samples come while the callback of another one takes its time."""
+    """The lost samples arrive while the callback of another sample is running."""
     trial.is_named = True
     with driver._working:
         driver._waiting.room = trial.lost.start + len(driver._waiting)
@@ -281,17 +279,17 @@ def _refused(trial: Trial, driver: Driver, clock: SimulatedClock) -> None:
 
 
 def _durable(trial: Trial) -> Verdicts:
-    """A run that is killed again and again, of which samples cannot be read or come too late."""
+    """A run that is killed repeatedly and whose lost samples are missed, refused or late."""
     rng = trial.rng
     told: dict[int, object] = {}
 
     def tell(number: int, attempt: object) -> None:
         if told.setdefault(number, attempt) != attempt:
-            raise AssertionError(f"{number} was told twice, and otherwise")
+            raise AssertionError(f"{number} was reported twice with a difference")
 
-    def begun() -> DurableMonitor:
+    def started() -> DurableMonitor:
         path = trial.folder / "run"
-        if rng.random() < 0.3 and path.exists():  # in the midst of an entry
+        if rng.random() < 0.3 and path.exists():  # killed while writing an entry
             with path.open("ab") as file:
                 file.write(b'[5,{"p"')
         return DurableMonitor(
@@ -303,10 +301,10 @@ def _durable(trial: Trial) -> Verdicts:
 
     how = rng.choice(("missed", "refused", "late"))
     trial.is_named = how != "missed"
-    monitor = begun()
+    monitor = started()
     for place, sample in enumerate(trial.case.samples):
         if rng.random() < 0.3:
-            monitor = begun()
+            monitor = started()
         if place not in trial.lost:
             monitor.step_ns(sample.t, dict(sample.values))
         elif how == "missed":
@@ -318,10 +316,10 @@ def _durable(trial: Trial) -> Verdicts:
         for place in trial.lost:
             _refuse(monitor, trial.case.samples[place].t, dict(trial.case.samples[place].values))
             if rng.random() < 0.3:
-                monitor = begun()
+                monitor = started()
     monitor.advance_ns(trial.end)
     if rng.random() < 0.3:
-        monitor = begun()
+        monitor = started()
     return monitor.monitor.finish_ns().verdicts
 
 
@@ -330,8 +328,7 @@ def _refuse(monitor: DurableMonitor, t: int, values: dict[str, Any]) -> None:
         monitor.step_ns(t, values)
     except TraceError:
         return
-    raise AssertionError("it was to be refused")
+    raise AssertionError("the sample was not refused")
 
 
 DOORS: Mapping[str, Door] = {"stdin": _stdin, "live": _live, "durable": _durable}
-"""By name."""

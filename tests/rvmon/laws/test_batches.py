@@ -1,4 +1,4 @@
-"""Samples that come out of order are judged as if they had come in order."""
+"""Samples that arrive out of order are evaluated as if they had arrived in order."""
 
 from dataclasses import replace
 
@@ -19,8 +19,7 @@ DELAY = 9
 @pytest.mark.law
 @settings(max_examples=12, deadline=None)
 @given(data=st.data())
-def test_the_order_within_the_delay(data: st.DataObject) -> None:
-    """Samples that come late, but within `max delay`, are judged at their instants."""
+def test_samples_late_within_the_delay_are_put_in_order(data: st.DataObject) -> None:
     case = data.draw(cases(Profile(mixed=False)))
     case = replace(case, actions=case.samples)
     late = [(s.t + data.draw(st.integers(0, DELAY)), s) for s in case.samples]

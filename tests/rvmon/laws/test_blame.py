@@ -1,4 +1,4 @@
-"""What a failure blames was false, as the law has it."""
+"""The part that a failure blames was false by the law."""
 
 import pytest
 from tests.tools.differential import cases_of
@@ -22,7 +22,7 @@ PROFILE = Profile(depth=3, requirements=1, captures=False, for_each=False)
 
 
 @pytest.mark.law
-def test_what_is_blamed_was_false():
+def test_the_blamed_part_was_false():
     make = Maker("c", Compiler())
     blamed = 0
     for seed in range(60):
@@ -32,9 +32,9 @@ def test_what_is_blamed_was_false():
             for attempt in report.attempts:
                 requirement = case.spec.requirements[attempt.requirement]
                 named = {
-                    format_formula(one): one
+                    format_formula(formula): formula
                     for part in subformulas(requirement.consequent)
-                    for one in (Unary(UnaryOp.NOT, part), part)
+                    for formula in (Unary(UnaryOp.NOT, part), part)
                 }
                 blame = attempt.blame
                 if attempt.decision is Decision.PREFIX and blame and blame.subformula in named:
@@ -47,11 +47,11 @@ def test_what_is_blamed_was_false():
 def start_of(judgement: Judgement, attempt: Attempt) -> Start:
     assert attempt.verdict is Verdict.FAIL
     followed = judgement.followings[attempt.requirement].attempts
-    return next(one.start for one in followed if one.number == attempt.number)
+    return next(other.start for other in followed if other.number == attempt.number)
 
 
 def was_false(start: Start, formula: Formula, attempt: Attempt, blame: Blame) -> bool:
-    """Whether a formula was, where its window says that it began, or where it had to hold."""
+    """Whether a formula was false at the start of the blamed window or where it had to hold."""
     truths = Truths(start.word, start.captured)
     bare = formula
     while isinstance(bare, Unary) and bare.op is UnaryOp.NOT:
@@ -68,8 +68,8 @@ def was_false(start: Start, formula: Formula, attempt: Attempt, blame: Blame) ->
     return any(truths.state(formula, position) is Truth.FALSE for position in positions)
 
 
-def test_an_obligation_that_was_released_is_not_blamed():
-    """That of 0 is met by `h` at 2; who knows when the one began that fails at 10."""
+def test_a_released_obligation_is_not_blamed():
+    """`h` at 2 releases the obligation of 0; the start of the one that fails at 10 is unknown."""
     monitor = rvmon.loads(
         "time held\nsignal p, q : bool\nevent h\n"
         "requirement R\n  whenever p then h R[3 ns, inf) q\n"
@@ -81,8 +81,8 @@ def test_an_obligation_that_was_released_is_not_blamed():
     assert attempt.blame.window == (10, None)
 
 
-def test_what_was_false_at_the_trigger_did_not_become_so():
-    """Whether `e` was there is known at 9 alone: `p` was false all the time."""
+def test_a_part_false_at_the_trigger_is_not_said_to_have_become_false():
+    """Whether `e` occurred is known only at 9, and `p` was false all the time."""
     monitor = rvmon.loads(
         "time sampled\nsignal p : bool\nevent e\n"
         "requirement R\n  whenever once[1 ns, 5 ns] e then p\n"

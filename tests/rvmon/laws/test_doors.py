@@ -1,4 +1,4 @@
-"""Green means green at the doors: what one loses is filled in, and overturns no verdict of it."""
+"""Verdicts of runs with lost samples hold whatever the lost samples were."""
 
 from itertools import islice
 
@@ -10,16 +10,15 @@ RUNS = 30
 
 
 @pytest.mark.parametrize("door", DOORS)
-def test_no_verdict_is_overturned(door, tmp_path):
-    """By what was lost, or any other in its place; late samples may take no failure back."""
+def test_lost_samples_overturn_no_verdict(door, tmp_path):
     tried = list(outcomes(door, DOORS[door], RUNS, 2, tmp_path))
-    assert [(one.name, one.overturned) for one in tried if one.overturned] == []
+    assert [(trial.name, trial.overturned) for trial in tried if trial.overturned] == []
     assert len(tried) == RUNS
-    assert sum(one.is_split for one in tried) >= RUNS / 10
+    assert sum(trial.is_split for trial in tried) >= RUNS / 10
 
 
-def test_a_door_that_loses_in_silence_is_found(tmp_path):
-    """The test of the test: it drops the samples, and tells nobody."""
+def test_a_door_that_drops_samples_silently_is_found(tmp_path):
+    """This tests the test above."""
 
     def silent(trial):
         rest = [s for n, s in enumerate(trial.case.samples) if n not in trial.lost]
@@ -29,10 +28,9 @@ def test_a_door_that_loses_in_silence_is_found(tmp_path):
         monitor.advance_ns(trial.end)
         return monitor.finish_ns().verdicts
 
-    assert any(one.overturned for one in outcomes("stdin", silent, 50, 1, tmp_path))
+    assert any(trial.overturned for trial in outcomes("stdin", silent, 50, 1, tmp_path))
 
 
-def test_a_door_loses_what_requirements_read(tmp_path):
-    """Each run lacks a letter without what is lost; no run is drawn twice."""
-    some = [one.name for one in islice(trials("stdin", 1, tmp_path), 20)]
-    assert len({*some}) == len(some) == 20
+def test_no_run_is_drawn_twice(tmp_path):
+    names = [trial.name for trial in islice(trials("stdin", 1, tmp_path), 20)]
+    assert len({*names}) == len(names) == 20

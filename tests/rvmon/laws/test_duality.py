@@ -1,4 +1,4 @@
-"""Operators are what SEMANTICS 2 defines them to be, on random operands and traces."""
+"""Operators equal their definitions in section 2 of the semantics, on random traces."""
 
 import re
 from collections.abc import Iterator
@@ -42,12 +42,12 @@ Pair = tuple[Formula, Formula]
 
 
 def is_born_with_its_signals(formula: Formula) -> bool:
-    """Whether all of it has a value once its signals have: elsewhere operators are not alike."""
+    """Whether the formula has a value once its signals have; otherwise the laws do not apply."""
     return not re.search(r"\b(prev|delta|rate|mean|variance)\(", format_formula(formula))
 
 
 def anywhere(a: Formula, b: Formula, low: int, high: int | None) -> Iterator[Pair]:
-    """Formulas that mean the same in every time model."""
+    """Pairs that are equivalent in every time model."""
     window = (low, high)
     yield no(no(a)), a
     yield no(two(a, "U", b, *window)), two(no(a), "R", no(b), *window)
@@ -67,7 +67,7 @@ def anywhere(a: Formula, b: Formula, low: int, high: int | None) -> Iterator[Pai
 
 
 def in_steps(a: Formula) -> Iterator[Pair]:
-    """The same with `X` and `Y`, outside held time."""
+    """Pairs with `X` and `Y` that are equivalent outside held time."""
     yield no(following(a)), following(no(a))
     yield rise(a), two(a, "and", no(previous(a)))
     yield fall(a), two(no(a), "and", previous(a))
@@ -75,7 +75,7 @@ def in_steps(a: Formula) -> Iterator[Pair]:
 
 
 def in_ticks(a: Formula) -> Iterator[Pair]:
-    """The same in held time, where the tick before is one tick before."""
+    """Pairs that are equivalent in held time, where the previous tick is one tick before."""
     yield rise(a), two(a, "and", no(once(a, 1, 1)))
     yield fall(a), two(no(a), "and", once(a, 1, 1))
 
@@ -92,8 +92,7 @@ TRACES = TraceProfile(outages=35)
 @pytest.mark.parametrize("time", TimeModel)
 @TRIED
 @given(data=st.data())
-def test_equivalent_formulas(data: st.DataObject, time: TimeModel) -> None:
-    """Formulas that are defined by each other have the same attempts, verdicts and instants."""
+def test_equivalent_formulas_have_the_same_attempts(data: st.DataObject, time: TimeModel) -> None:
     spec = data.draw(specs(replace(ONE, time=time)))
     shape = Shape(step=time is not TimeModel.HELD)
     drawn = formulas(shape, depth=2).filter(is_born_with_its_signals)
@@ -103,8 +102,8 @@ def test_equivalent_formulas(data: st.DataObject, time: TimeModel) -> None:
     pairs += in_ticks(a) if time is TimeModel.HELD else in_steps(a)
     left, right = data.draw(st.sampled_from(pairs))
     case = known_from_the_first(data.draw(traces(spec, TRACES)))
-    # Of `held`, what is unknown up to the first tick of a clock may not be born; that a trace
-    # has lasted long enough may be sure though nobody knows where it began.
+    # `held` is an exception: values unknown up to the first tick of a clock may not exist yet,
+    # and a trace may surely have lasted long enough although its start is unknown.
     exact = time is not TimeModel.CLOCKED and not case.outages
     assume(exact or getattr(left, "op", None) is not UnaryOp.HELD)
     cases = [replace(case, spec=with_consequent(spec, formula)) for formula in (left, right)]
@@ -124,10 +123,10 @@ def test_negation_exchanges_verdicts(spec: CheckedSpec, data: st.DataObject) -> 
             changed = with_consequent(spec, consequent)
             [required] = changed.requirements.values()
             upon = requirement(consequent, upon=required.trigger, at_end=at_end)
-            one = spec_of(upon, time=spec.time, period=spec.period)
-            reports.append(judge(replace(case, spec=structs.replace(one, signals=spec.signals))))
+            made = spec_of(upon, time=spec.time, period=spec.period)
+            reports.append(judge(replace(case, spec=structs.replace(made, signals=spec.signals))))
         exchange = {"P": "F", "F": "P", "I": "I"}
-        # What is in doubt can only be met.
+        # Attempts in doubt are left out, as they can only pass.
         sure = [[a for a in report.attempts if not a.in_doubt] for report in reports]
         wanted = [(a.number, a.decided, exchange[a.verdict.value], a.decision) for a in sure[0]]
         got = [(a.number, a.decided, a.verdict.value, a.decision) for a in sure[1]]

@@ -1,4 +1,4 @@
-"""What comes too late: no green on letters that it would have changed, no alarm taken back."""
+"""Samples that arrive too late: no pass that they might overturn, no failure taken back."""
 
 from dataclasses import replace
 
@@ -20,7 +20,7 @@ pytestmark = pytest.mark.law
 
 @st.composite
 def late_cases(draw: st.DrawFn) -> tuple[Case, Case, Sample]:
-    """A case as it was, and as it was judged without one of its samples; not the last."""
+    """A case, the same without one sample (not the last), and that sample."""
     whole = draw(cases(Profile(), TraceProfile(advances=False)))
     assume(len(whole.samples) > 1)
     late = whole.samples[draw(st.integers(0, len(whole.samples) - 2))]
@@ -30,7 +30,9 @@ def late_cases(draw: st.DrawFn) -> tuple[Case, Case, Sample]:
 
 @TRIED
 @given(late_cases())
-def test_no_green_hides_a_failure(cases_: tuple[Case, Case, Sample]) -> None:
+def test_a_late_sample_leaves_no_false_pass_and_takes_no_failure_back(
+    cases_: tuple[Case, Case, Sample],
+) -> None:
     whole, judged, late = cases_
     verdicts = judge(judged).verdicts
     with_late = judge(whole).verdicts
@@ -43,12 +45,16 @@ def test_no_green_hides_a_failure(cases_: tuple[Case, Case, Sample]) -> None:
 
 @TRIED
 @given(late_cases())
-def test_what_reads_none_of_its_names(cases_: tuple[Case, Case, Sample]) -> None:
+def test_untouched_requirements_have_the_same_attempts(cases_: tuple[Case, Case, Sample]) -> None:
     whole, judged, late = cases_
     spec = judged.spec
     touched = {
-        name: is_touched(spec, one, judged.samples, late) for name, one in spec.requirements.items()
+        name
+        for name, requirement in spec.requirements.items()
+        if is_touched(spec, requirement, judged.samples, late)
     }
-    with_late, without = (outcomes(judge(one)) for one in (whole, judged))
-    kept = [{k: v for k, v in one.items() if not touched[k[0]]} for one in (with_late, without)]
-    assert kept[0] == kept[1]
+    with_late, without = (
+        {key: found for key, found in outcomes(judge(case)).items() if key[0] not in touched}
+        for case in (whole, judged)
+    )
+    assert with_late == without

@@ -1,4 +1,4 @@
-"""What is told in other portions, or later, changes nothing that was decided."""
+"""Decisions do not depend on later samples, on the portions of a trace, or on a shift in time."""
 
 from dataclasses import replace
 
@@ -26,7 +26,7 @@ pytestmark = pytest.mark.law
 
 @TRIED
 @given(cases(), st.data())
-def test_a_longer_trace_overturns_nothing(case: Case, data: st.DataObject) -> None:
+def test_a_longer_trace_changes_no_decision(case: Case, data: st.DataObject) -> None:
     count = data.draw(st.integers(0, len(case.actions)))
     prefix = judge(replace(case, actions=case.actions[:count], end=None))
     later = outcomes(judge(case))
@@ -37,7 +37,7 @@ def test_a_longer_trace_overturns_nothing(case: Case, data: st.DataObject) -> No
 
 @TRIED
 @given(cases(), st.data())
-def test_splitting_by_advance(case: Case, data: st.DataObject) -> None:
+def test_advancing_between_samples_changes_nothing(case: Case, data: st.DataObject) -> None:
     actions: list[Sample | int] = []
     before: int | None = None
     for action in case.actions:
@@ -53,25 +53,26 @@ def test_splitting_by_advance(case: Case, data: st.DataObject) -> None:
 @pytest.mark.parametrize("time", [TimeModel.HELD, TimeModel.CLOCKED])
 @TRIED
 @given(data=st.data())
-def test_samples_that_nobody_reads(data: st.DataObject, time: TimeModel) -> None:
+def test_samples_of_names_that_no_requirement_reads_change_nothing(
+    data: st.DataObject, time: TimeModel
+) -> None:
     case = data.draw(cases(Profile(time=time)))
     if not case.samples:
         return
     read = {n for one in case.spec.requirements.values() for n in names_read(one, keys=False)}
     others = [name for name in BOOLS if name not in read and case.names is None]
-    said_too = {name: data.draw(st.booleans()) for name in others}
+    values = {name: data.draw(st.booleans()) for name in others}
     first, last = case.samples[0].t, case.samples[-1].t
-    said = {sample.t for sample in case.samples}
-    extra = data.draw(st.lists(st.integers(first, last), max_size=5))
-    told = [*case.samples, *(Sample(t, said_too) for t in {*extra} - said)]
-    told.sort(key=lambda sample: sample.t)
+    extra = {*data.draw(st.lists(st.integers(first, last), max_size=5))}
+    extra -= {sample.t for sample in case.samples}
+    samples = sorted([*case.samples, *(Sample(t, values) for t in extra)], key=lambda one: one.t)
     advances = tuple(t for t in case.advances if t > last)
-    assert judged_otherwise(case, replace(case, actions=(*told, *advances))) == []
+    assert judged_otherwise(case, replace(case, actions=(*samples, *advances))) == []
 
 
 @TRIED
 @given(cases())
-def test_order_inside_a_sample(case: Case) -> None:
+def test_the_order_of_names_in_a_sample_does_not_matter(case: Case) -> None:
     turned = tuple(
         Sample(action.t, dict(reversed(action.values.items())))
         if isinstance(action, Sample)
@@ -83,8 +84,8 @@ def test_order_inside_a_sample(case: Case) -> None:
 
 @TRIED
 @given(cases())
-def test_shifting_in_time(case: Case) -> None:
-    """A trace that happens later is judged alike, later (clocked: by multiples of the period)."""
+def test_a_shift_in_time_shifts_the_attempts(case: Case) -> None:
+    """In clocked time, for shifts by multiples of the period."""
     shift = 7 * (case.spec.period or 1)
     end = None if case.end is None else case.end + shift
     later = replace(case, actions=moved(case.actions, lambda t: t + shift), end=end)
@@ -105,7 +106,7 @@ def _back(report: Report, shift: int) -> Report:
 
 @TRIED
 @given(cases(), st.data())
-def test_a_monitor_that_is_used_again_is_as_a_new_one(case: Case, data: st.DataObject) -> None:
+def test_a_reset_monitor_behaves_like_a_new_one(case: Case, data: st.DataObject) -> None:
     before = data.draw(st.integers(0, len(case.actions)))
     monitor, new = (Spec(case.spec).monitor(sources=case.names) for _ in "12")
     for action in case.actions[:before]:

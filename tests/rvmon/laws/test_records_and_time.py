@@ -1,4 +1,4 @@
-"""What is said of a decision does not depend on how time was told to pass."""
+"""Records of decisions do not depend on calls that only advance time."""
 
 import random
 from dataclasses import replace
@@ -15,7 +15,7 @@ from rvmon.session import Spec
 
 @pytest.mark.law
 @pytest.mark.parametrize("time", [TimeModel.HELD, TimeModel.CLOCKED])
-def test_advance_changes_no_record(time):
+def test_advancing_changes_no_record(time):
     decided = 0
     for seed in range(60):
         rng = random.Random(f"advance/{seed}")
@@ -37,7 +37,7 @@ def test_advance_changes_no_record(time):
                         if all(later < other or t >= other for other in stamps):
                             monitor.advance_ns(later)
             attempts = monitor.finish_ns(stamps[-1] + 9).attempts
-            # Of an instant that time has only come to, the values are not known yet.
+            # Values at an instant are unknown while time has only advanced to it.
             found.append([repr(replace(attempt, at_decision={})) for attempt in attempts])
         assert found[0] == found[1], formula
         decided += len(found[0])

@@ -1,4 +1,4 @@
-"""The length of a tick is of no account: what is judged goes from event to event."""
+"""The length of a tick does not matter, as evaluation goes from event to event."""
 
 from dataclasses import replace
 
@@ -14,7 +14,7 @@ from rvmon.testing.strategies import cases
 from rvmon.verdicts.report import Report
 
 SPARSE = 1_000
-"""So many ticks between any two instants that differ: one tick more never meets another."""
+"""Ticks between two different instants, so that one tick more never reaches the next."""
 
 FURTHER = 1_000_000
 
@@ -22,8 +22,8 @@ FURTHER = 1_000_000
 @pytest.mark.law
 @TRIED
 @given(cases(Profile(mixed=False, requirements=1)))
-def test_scaling(case: Case) -> None:
-    assume("rate(" not in show_spec(case.spec))  # it is per second
+def test_scaled_times_give_scaled_attempts(case: Case) -> None:
+    assume("rate(" not in show_spec(case.spec))  # a rate is per second
     short = judge(longer(case, SPARSE))
     long = judge(longer(case, SPARSE * FURTHER))
     assert in_units(long, SPARSE * FURTHER) == in_units(short, SPARSE)
@@ -51,7 +51,7 @@ def longer(case: Case, factor: int) -> Case:
 
 
 def in_units(report: Report, unit: int) -> list[tuple[object, ...]]:
-    """The attempts with each instant as whole units and the ticks beside them."""
+    """The attempts with each instant as a number of whole units and a rest of ticks."""
 
     def split(instant: int | None) -> tuple[int, int] | None:
         if instant is None:

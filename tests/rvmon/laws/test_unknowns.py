@@ -1,4 +1,4 @@
-"""Knowing more never overturns what was decided while knowing less."""
+"""Decisions made with unknown values hold for all values."""
 
 from dataclasses import replace
 from random import Random
@@ -23,11 +23,14 @@ pytestmark = pytest.mark.law
 
 @TRIED
 @given(specs(ONE), st.data(), st.randoms(use_true_random=False))
-def test_resolving_unknowns(spec: CheckedSpec, data: st.DataObject, rng: Random) -> None:
-    """With values for what was unknown, P stays P and F stays F, decided no later.
+def test_known_values_change_no_decision(
+    spec: CheckedSpec, data: st.DataObject, rng: Random
+) -> None:
+    """P stays P and F stays F, decided no later, if unknown values become known.
 
-    The trigger is known (`start`), `known(x)` speaks of the unknown itself and is left out. What is
-    not there yet is not what was lost: here all is there from the first sample on.
+    The trigger is known (`start`); formulas with `known(x)` are left out, as they refer to the
+    unknown itself. Every signal has a value from the first sample on, because a signal without a
+    first value differs from one whose value was lost.
     """
     [first] = spec.requirements.values()
     assume(is_spoken_of(spec))
@@ -49,7 +52,6 @@ def test_resolving_unknowns(spec: CheckedSpec, data: st.DataObject, rng: Random)
 
 @TRIED
 @given(cases(Profile(), TraceProfile(outages=35)), st.randoms(use_true_random=False))
-def test_filling_in_what_was_lost(case: Case, rng: Random) -> None:
-    """Green never hides a failure."""
+def test_no_values_for_lost_samples_overturn_a_pass(case: Case, rng: Random) -> None:
     assume(is_spoken_of(case.spec))
     assert overturned(rng, case, 4, judge).overturning is None

@@ -26,8 +26,7 @@ pytestmark = pytest.mark.law
 
 @TRIED
 @given(specs(ONE), st.data())
-def test_whenever_is_weak_until(spec: CheckedSpec, data: st.DataObject) -> None:
-    """A level that is always known starts and settles the same attempts either way."""
+def test_whenever_with_a_known_level_is_weak_until(spec: CheckedSpec, data: st.DataObject) -> None:
     [first] = spec.requirements.values()
     level = p if is_pulse(first.trigger) or data.draw(st.booleans()) else first.trigger
     assume(level != end)
@@ -35,10 +34,10 @@ def test_whenever_is_weak_until(spec: CheckedSpec, data: st.DataObject) -> None:
     whenever = replace(first, trigger=level, pulse=False, mode=Mode.WHENEVER)
     weak = two(first.consequent, "W", no(level))
     upon = replace(whenever, mode=Mode.UPON, consequent=weak)
-    # Every signal has a value from the first sample on and none is ever lost.
+    # Every signal has a value from the first sample on, and none is ever lost.
     spec = structs.replace(spec, signals=signals())
     case = known_from_the_first(data.draw(traces(spec, TraceProfile(unknowns=False))))
-    # A trigger over payloads, `prev` and the like may be unknown all the same.
+    # Even so, a trigger that reads payloads or `prev` may be unknown.
     told = [
         replace(case, spec=structs.replace(spec, requirements={r.id: r})) for r in (whenever, upon)
     ]
@@ -47,20 +46,20 @@ def test_whenever_is_weak_until(spec: CheckedSpec, data: st.DataObject) -> None:
 
 
 def up_to_failure(report: Report) -> list[Outcome]:
-    """The attempts up to the first that fails: an episode goes on after that."""
-    found = sorted(outcomes(report).values(), key=lambda one: one.triggered)
-    failed = [place for place, one in enumerate(found) if one.verdict is Verdict.FAIL]
+    """The attempts up to the first failure, after which a `whenever` episode continues."""
+    found = sorted(outcomes(report).values(), key=lambda attempt: attempt.triggered)
+    failed = [place for place, attempt in enumerate(found) if attempt.verdict is Verdict.FAIL]
     return found[: failed[0] + 1] if failed else found
 
 
 def _asks_updates(formula: Formula) -> bool:
-    """Whether it reads `prev` and the like: unborn at first, they count in favour below a level."""
-    atoms = [one for one in subformulas(formula) if isinstance(one, SignalAtom | Compare)]
+    """Whether it reads `prev` or the like, which count in favour while they have no value yet."""
+    atoms = [part for part in subformulas(formula) if isinstance(part, SignalAtom | Compare)]
     return any(any(signals_of(atom).values()) for atom in atoms)
 
 
 def _known(case: Case) -> bool:
-    """Whether the trigger has a value at every position: then `θ or not θ` holds throughout."""
+    """Whether the trigger θ has a value everywhere, that is, `θ or not θ` holds throughout."""
     [required] = case.spec.requirements.values()
     asked = requirement(always(two(required.trigger, "or", no(required.trigger))))
     spec = structs.replace(case.spec, requirements={asked.id: asked})

@@ -1,4 +1,4 @@
-"""How laws are tried: on the core, which other tests hold to the oracle call by call."""
+"""Laws are tried on the native core; other tests compare the core with the oracle."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
@@ -23,18 +23,18 @@ ONE = Profile(requirements=1, captures=False, for_each=False)
 """One requirement without captured values."""
 
 _MAKE = Maker()
-"""Of all cases: two of one specification, one after the other, are judged by one compiled."""
+"""Shared by all cases, so that successive cases of a specification are compiled once."""
 
 _BORN = {"p": True, "q": False, "r": True, "x": 1, "y": 0, "mode": "red"}
 
 
 def is_known(value: Value) -> bool:
-    """Whether a sample says what it is."""
+    """Whether a value is neither `None` nor NaN."""
     return value is not None and value == value
 
 
 def known_from_the_first(case: Case) -> Case:
-    """The case with a value for each signal in its first sample: all is born with the trace."""
+    """The case with a value for each signal in its first sample."""
     [*first] = case.samples[:1]
     if not first:
         return case
@@ -45,17 +45,18 @@ def known_from_the_first(case: Case) -> Case:
 
 
 def judge(case: Case) -> Report:
-    """The report of a monitor that gets every sample whole and in order."""
+    """The report of a monitor that gets every sample, complete and in order."""
     return drive(_MAKE(case), case)[0]
 
 
 def judged_otherwise(left: Case, right: Case) -> list[str]:
-    """How the reports on two cases differ."""
+    """The differences between the reports on two cases."""
     return differences(judge(left), judge(right))
 
 
 def moved(actions: Iterable[Sample | int], to: Callable[[int], int]) -> tuple[Sample | int, ...]:
     """The same actions at other instants."""
     return tuple(
-        replace(one, t=to(one.t)) if isinstance(one, Sample) else to(one) for one in actions
+        replace(action, t=to(action.t)) if isinstance(action, Sample) else to(action)
+        for action in actions
     )

@@ -1,4 +1,4 @@
-"""Runs in processes that are killed at random points: are their verdicts those of one?"""
+"""Watches that are killed at random points, beside one that is not."""
 
 import json
 import os
@@ -20,14 +20,12 @@ from rvmon.trace.time import NEVER, TICKS_PER_SECOND
 
 
 class Forked:
-    """A run of something in a process of its own, at the head of all that it begins.
-
-    It has all modules of this process, and can be killed.
+    """A function in a forked process that leads its own process group and can be killed.
 
     Args:
-        run: gives the exit code.
-        folder: where it runs.
-        out: takes its standard output; what it says beside goes to a file of this name with `.err`.
+        run: returns the exit code.
+        folder: the working directory.
+        out: file for standard output; standard error goes to this name with `.err`.
     """
 
     def __init__(self, run: Callable[[], object], folder: Path, out: Path) -> None:
@@ -38,26 +36,26 @@ class Forked:
 
     @property
     def code(self) -> int | None:
-        """How it ended, below 0 by which signal; `None`: it has not."""
+        """The exit code, negative for a signal, or `None` while the process runs."""
         return self._process.exitcode
 
     def kill_behind(self, size: int) -> bool:
-        """Kill it when it has told so many bytes; `False`: it ended before."""
+        """Kill the process once it has written `size` bytes; `False` if it ended before."""
         return self.kill_when(lambda: self._out.stat().st_size >= size)
 
     def lines(self) -> list[str]:
-        """What was told, but for a last line in which it was killed."""
+        """The complete lines of the output."""
         text = self._out.read_text()
         return [line for line in text.splitlines(keepends=True) if line.endswith("\n")]
 
     def kill_when(self, is_time: Callable[[], bool]) -> bool:
-        """Kill it with all that it began as soon as something is true; `False`: it ended before."""
+        """Kill the process group once a condition holds; `False` if the process ended before."""
         end, pid = time.monotonic() + 20 * LONG, self._process.pid
         assert pid, "it was started"
         while self.code is None:
             is_late = time.monotonic() > end
             if is_late or is_time():
-                with suppress(ProcessLookupError):  # it is not at the head of any yet
+                with suppress(ProcessLookupError):  # it does not lead a group yet
                     os.killpg(pid, signal.SIGKILL)
                 self._process.kill()
                 self._process.join()
@@ -99,7 +97,7 @@ Verdicts = dict[int, Mapping[str, Any]]
 
 
 def samples(rng: random.Random, count: int) -> Iterator[tuple[int, dict[str, Any]]]:
-    """Nanoseconds and values; stamps may be equal, and one may be late."""
+    """Stamps in nanoseconds and values; stamps may be equal, and some are late."""
     t = 0
     for _ in range(count):
         t += rng.choice((0, 1, 7, 7, 9, 60)) * TICKS_PER_SECOND // 1000
@@ -117,7 +115,7 @@ def samples(rng: random.Random, count: int) -> Iterator[tuple[int, dict[str, Any
 
 
 def written(folder: Path, seed: int, count: int) -> None:
-    """Write the specification and lines, of which some are none."""
+    """Write the specification and the samples as lines, some of them torn."""
     rng = random.Random(seed)
     (folder / "kept.rv").write_text(SPEC)
     lines = [json.dumps({"t_ns": t, **values}) for t, values in samples(rng, count)]
@@ -126,12 +124,10 @@ def written(folder: Path, seed: int, count: int) -> None:
 
 
 def told(lines: Iterable[str], known: Verdicts) -> Verdicts:
-    """What a watch told, beside what was known; a number that tells something else is a fault."""
+    """Add the reported verdicts to the known ones; repeated numbers must have the same content."""
     for line in lines:
-        if not line.endswith("\n"):  # the process was killed in it
-            continue
-        one = json.loads(line)
-        assert known.setdefault(one["number"], one) == one, "a number was told twice, otherwise"
+        verdict = json.loads(line)
+        assert known.setdefault(verdict["number"], verdict) == verdict, "repeated with a change"
     return known
 
 
@@ -139,7 +135,7 @@ WATCH = "watch kept.rv lines.jsonl --state {} --format json"
 
 
 def killed(folder: Path, kills: int, seed: int) -> tuple[Verdicts, Verdicts, int]:
-    """What it tells that nobody kills, what in all where it is killed, and how often it was."""
+    """Verdicts of a whole watch, verdicts of one that is killed and resumed, number of kills."""
     rng, found, done = random.Random(seed), Verdicts(), 0
     whole = Forked(partial(main, WATCH.format("whole.state").split()), folder, folder / "told")
     whole.kill_when(lambda: False)

@@ -1,4 +1,4 @@
-"""Samples of running robots, judged on a clock that stands until the test sets it."""
+"""Samples of running robots, evaluated on a clock that only the test moves."""
 
 import logging
 
@@ -21,7 +21,7 @@ requirement D2 always speed <= 1
 
 
 class Door:
-    """A driver of the door, its clock, and the names of what was judged."""
+    """A driver of the door, its clock, and the names of decided attempts."""
 
     def __init__(self, text: str = DOOR, **options) -> None:
         self.clock = SimulatedClock()
@@ -30,24 +30,24 @@ class Door:
         self.driver = Driver(loads(text), clock=self.clock, **options)
 
     def at(self, seconds: float) -> None:
-        """Time comes to an instant, and what waits is judged."""
+        """Move the clock to an instant and evaluate what waits."""
         self.clock.set_ns(round(seconds * S))
         while self.driver.work() == 0:
             pass
 
     def hears(self, seconds: float, robot: str = "", **values) -> bool:
-        """Time comes to an instant, at which a sample is offered; whether it is taken."""
+        """Move the clock to an instant and offer a sample; returns whether it is taken."""
         self.at(seconds)
         return self.driver.offer(values, robot=robot)
 
     def ended(self, seconds: float) -> str:
-        """End it at an instant; the verdicts of its only run, in the order of the file."""
+        """Close at an instant; returns the verdicts of the only run, in the order of the file."""
         self.at(seconds)
         (report,) = self.driver.close()[""]
         return " ".join(report.verdicts.values())
 
 
-def test_a_deadline_that_is_missed_is_told_by_time_alone():
+def test_time_alone_decides_a_missed_deadline():
     door = Door()
     door.hears(0, knock=True)
     door.at(2)
@@ -58,7 +58,7 @@ def test_a_deadline_that_is_missed_is_told_by_time_alone():
     assert door.judged == ["D1#1"]
 
 
-def test_robots_are_judged_apart_and_failures_told_apart_from_passes():
+def test_each_robot_has_its_own_verdicts_and_only_failures_reach_on_failure():
     failed = []
     door = Door(on_failure=failed.append)
     door.hears(0, "left", knock=True, speed=2.0)
@@ -66,16 +66,14 @@ def test_robots_are_judged_apart_and_failures_told_apart_from_passes():
     door.hears(1, "left", opened=True)
     door.at(3)
     assert door.judged == ["D2#1", "D1#1", "D1#1"]
-    assert [(one.robot, one.run, one.attempt.name) for one in failed] == [
-        ("left", 1, "D2#1"),
-        ("right", 1, "D1#1"),
-    ]
+    found = [(failure.robot, failure.run, failure.attempt.name) for failure in failed]
+    assert found == [("left", 1, "D2#1"), ("right", 1, "D1#1")]
     assert failed[0].to_dict()["decided"] == 0
     found = {name: reports[0].verdicts["D1"] for name, reports in door.driver.close().items()}
     assert found == {"left": "P", "right": "F"}
 
 
-def test_a_robot_too_many_is_turned_away(caplog):
+def test_samples_of_a_robot_above_the_limit_are_refused(caplog):
     door = Door(most_robots=1)
     assert door.hears(0, "left", speed=0.0)
     with caplog.at_level(logging.WARNING, "rvmon.live.input"):
@@ -88,8 +86,8 @@ def test_a_robot_too_many_is_turned_away(caplog):
     assert len(caplog.records) == 1
 
 
-def test_what_finds_no_room_leaves_no_verdict_that_needs_it():
-    """The lost opening may have come: no F. The lost speed may have been high: no P."""
+def test_a_sample_without_room_leaves_verdicts_open_that_need_it():
+    """The lost sample may have opened the door (no F) or shown a high speed (no P)."""
     door = Door(room=2)
     door.driver.offer({"speed": 0.5})
     door.driver.offer({"speed": 0.5, "knock": True})
@@ -99,14 +97,15 @@ def test_what_finds_no_room_leaves_no_verdict_that_needs_it():
     assert (status.samples, status.lost) == (2, 1)
     (report,) = door.driver.close()[""]
     assert [*report.verdicts.values()] == ["I", "I"]
-    dropped = [one for one in report.health if one.kind is HealthKind.DROPPED]
-    assert [(one.name, *one.requirements) for one in dropped] == [("opened", "D1"), ("speed", "D2")]
+    dropped = [entry for entry in report.health if entry.kind is HealthKind.DROPPED]
+    found = [(entry.name, *entry.requirements) for entry in dropped]
+    assert found == [("opened", "D1"), ("speed", "D2")]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["real", "real ignore NaN"])
-def test_a_first_value_that_is_lost_is_not_excused(kind):
-    """Before a signal is born nothing is required; nobody knows that it was not."""
+def test_a_lost_first_value_is_no_excuse(kind):
+    """Nothing is required before the first value, but the lost sample may have had one."""
     door = Door(DOOR.replace("real", kind), room=1)
     door.hears(0, knock=False)
     assert not door.driver.offer({"speed": 5.0})
@@ -114,7 +113,7 @@ def test_a_first_value_that_is_lost_is_not_excused(kind):
     assert door.ended(2) == "NT I"
 
 
-def test_much_that_is_lost_is_one_stretch():
+def test_many_lost_samples_take_one_entry_of_the_queue():
     door = Door(room=1)
     for _ in range(5_002):
         door.driver.offer({"knock": True})
@@ -125,7 +124,7 @@ def test_much_that_is_lost_is_one_stretch():
 
 
 @pytest.mark.parametrize(("knocks_at", "expected"), [(3, "F"), (1.5, "I")])
-def test_what_a_connection_lost_is_unknown_until_it_is_back(knocks_at, expected):
+def test_events_are_unknown_while_the_connection_is_down(knocks_at, expected):
     door = Door()
     door.hears(0, speed=0.5, opened=False)
     door.at(1)
@@ -141,8 +140,8 @@ def test_what_a_connection_lost_is_unknown_until_it_is_back(knocks_at, expected)
     assert door.ended(9) == f"{expected} I"
 
 
-def test_what_was_missed_of_one_robot_is_nothing_to_another():
-    """Of a robot that is not named all are meant."""
+def test_missed_samples_of_one_robot_do_not_affect_another():
+    """Without the name of a robot, all robots missed them."""
     door = Door()
     for robot in ("left", "right"):
         door.hears(0, robot, speed=0.5)
@@ -157,8 +156,8 @@ def test_what_was_missed_of_one_robot_is_nothing_to_another():
 
 @each("names", [None, ["opened"], ["knock", "speed", "opened"]])
 @each("found", [False, True])
-def test_what_is_down_is_down_in_the_next_run_too(names, found):
-    """Whatever began it: another specification, or a clock that was set back."""
+def test_lost_names_stay_lost_in_the_next_run(names, found):
+    """Whether it starts with another specification or because the clock was set back."""
     door = Door()
     door.hears(0, speed=0.5)
     door.at(1)
@@ -175,12 +174,12 @@ def test_what_is_down_is_down_in_the_next_run_too(names, found):
     door.clock.set_ns(1)
     door.hears(0.5, speed=0.5, knock=True)
     door.at(9)
-    reports = [one.verdicts["D1"].value for one in door.driver.close()[""][-2:]]
-    assert reports == (["F", "F"] if found else ["I", "I"])
+    verdicts = [report.verdicts["D1"].value for report in door.driver.close()[""][-2:]]
+    assert verdicts == (["F", "F"] if found else ["I", "I"])
 
 
-def test_what_a_specification_does_not_declare_is_not_lost():
-    """A name that is misspelt is told; one that another specification had harms nothing."""
+def test_undeclared_names_cannot_be_lost():
+    """A misspelt name is an error; lost names of the previous specification are forgotten."""
     door = Door()
     door.hears(0, speed=0.5)
     with pytest.raises(UnknownNameError, match="`speed`"):
@@ -193,8 +192,7 @@ def test_what_a_specification_does_not_declare_is_not_lost():
     assert door.driver.close()[""][-1].verdicts == {"R1": Verdict.PASS}
 
 
-def test_what_is_too_late_is_lost_for_good():
-    """A stretch that was judged already leaves nothing green that reads its names."""
+def test_a_loss_in_the_past_leaves_readers_of_its_names_open():
     door = Door()
     door.hears(0, speed=0.5)
     door.hears(5, speed=0.5)
@@ -204,8 +202,8 @@ def test_what_is_too_late_is_lost_for_good():
     assert door.ended(7) == "NT I"
 
 
-def test_each_lost_sample_is_a_position_of_sampled_time():
-    """`X` is the next sample, also if that is lost: nobody knows what it said."""
+def test_a_lost_sample_is_a_position_of_sampled_time():
+    """`next` refers to the lost sample, whose values are unknown."""
     spec = "spec s\ntime sampled\nevent a, b, c\nrequirement R\n  upon a\n  then next b\n"
     door = Door(spec, room=1)
     for t, name in enumerate("abc"):
@@ -218,7 +216,7 @@ def test_each_lost_sample_is_a_position_of_sampled_time():
 @pytest.mark.parametrize(
     ("values", "why"), [({"sped": 1.0}, "no signal or event"), ({"speed": "fast"}, "a number")]
 )
-def test_a_sample_that_is_refused_stops_nothing(values, why, caplog):
+def test_a_refused_sample_is_lost_and_the_run_continues(values, why, caplog):
     door = Door()
     door.hears(0, speed=0.5)
     with caplog.at_level(logging.WARNING, "rvmon.live.input"):
@@ -230,8 +228,7 @@ def test_a_sample_that_is_refused_stops_nothing(values, why, caplog):
     assert door.ended(2) == "NT I"
 
 
-def test_a_sample_that_comes_late_is_unknown_from_then_on():
-    """Time has passed it: it is not judged, and what it spoke of is not vouched for."""
+def test_a_sample_behind_the_clock_leaves_its_names_unknown():
     door = Door()
     door.hears(0, speed=0.5)
     door.at(5)
@@ -239,23 +236,14 @@ def test_a_sample_that_comes_late_is_unknown_from_then_on():
     door.at(6)
     (report,) = door.driver.close()[""]
     assert report.verdicts["D2"] is Verdict.INCONCLUSIVE
-    assert [one.count for one in report.health if one.kind is HealthKind.LATE] == [1]
+    assert [entry.count for entry in report.health if entry.kind is HealthKind.LATE] == [1]
 
 
-def test_with_a_lag_samples_may_come_late():
+def test_samples_within_the_lag_are_put_in_order_and_later_ones_lost():
     door = Door(lag_ns=2 * S)
-    door.driver.offer({"knock": True}, t_ns=0)
-    door.at(3)
-    door.driver.offer({"opened": True}, t_ns=2 * S)
-    door.at(9)
-    assert door.driver.status()[""].verdicts["D1"] is Verdict.PASS
-
-
-def test_with_a_lag_samples_are_put_in_order():
-    """Within it; one that comes later still is told, and leaves its names unknown."""
-    door = Door(lag_ns=2 * S)
-    for t, values in ((0, {"knock": True}), (4, {}), (2, {"opened": True}), (5, {})):
-        assert door.driver.offer(values, t_ns=t * S)
+    for now, t, name in ((0, 0, "knock"), (3, 4, ""), (3, 2, "opened"), (3, 5, "")):
+        door.at(now)
+        assert door.driver.offer({name: True} if name else {}, t_ns=t * S)
     door.at(9)
     status = door.driver.status()[""]
     assert (status.verdicts["D1"], status.lost) == (Verdict.PASS, 0)
@@ -266,8 +254,8 @@ def test_with_a_lag_samples_are_put_in_order():
     assert "it exceeds the allowed delay" in status.refusal
 
 
-def test_a_clock_that_goes_back_begins_a_new_run():
-    """As a simulation that starts again: the report of the first says why, and both count."""
+def test_a_clock_that_goes_back_starts_a_new_run():
+    """A simulation was restarted. The report of the first run has the reason; both runs count."""
     ended = []
     door = Door(on_report=lambda robot, report: ended.append((robot, report)))
     door.hears(0, speed=3.0)
@@ -282,8 +270,8 @@ def test_a_clock_that_goes_back_begins_a_new_run():
     assert door.driver.close()[""][1].verdicts["D2"] is Verdict.PASS
 
 
-def test_a_clock_that_leaps_by_years_begins_a_new_run(caplog):
-    """A machine that has no battery learns what time it is: nothing was required all that time."""
+def test_a_clock_that_leaps_by_years_starts_a_new_run(caplog):
+    """A machine without a battery learns the time; no deadline passed in between."""
     door = Door(DOOR.replace("always speed", "always within 1 s speed"))
     door.hears(0, speed=3.0, knock=True)
     with caplog.at_level(logging.WARNING, "rvmon.live.input"):
@@ -293,8 +281,7 @@ def test_a_clock_that_leaps_by_years_begins_a_new_run(caplog):
     assert (status.run, *status.verdicts.values()) == (2, "I", "I")
 
 
-def test_another_specification_is_taken_up_at_once():
-    """One that lacks what was asked for is refused."""
+def test_a_new_specification_applies_at_once_if_it_has_the_requested_requirements():
     door = Door(only=["D2"])
     door.hears(0, speed=1.5)
     with pytest.raises(UnknownNameError):
@@ -308,7 +295,7 @@ def test_another_specification_is_taken_up_at_once():
     assert (first.verdicts["D2"], second.verdicts["D2"]) == (Verdict.FAIL, Verdict.PASS)
 
 
-def test_what_a_callback_raises_stops_nothing(caplog):
+def test_an_exception_in_a_callback_is_logged_and_the_run_continues(caplog):
     door = Door(on_failure=lambda _: 1 // 0)
     with caplog.at_level(logging.ERROR, "rvmon.live"):
         for t, speed in enumerate((2.0, 0.0, 2.0)):
@@ -319,7 +306,7 @@ def test_what_a_callback_raises_stops_nothing(caplog):
     assert "ZeroDivisionError" in caplog.text
 
 
-def test_a_callback_may_look_but_not_drive():
+def test_a_callback_may_read_the_status_but_not_drive():
     seen = []
 
     def look(_):
@@ -334,7 +321,7 @@ def test_a_callback_may_look_but_not_drive():
     assert (len(seen), door.driver.errors) == (1, 0)
 
 
-def test_closing_judges_what_waits_and_is_the_end():
+def test_closing_evaluates_waiting_samples_and_is_final():
     door = Door()
     door.hears(0, speed=2.0)
     reports = door.driver.close()
@@ -344,19 +331,21 @@ def test_closing_judges_what_waits_and_is_the_end():
         door.hears(0, speed=0.0)
 
 
-def test_wrong_arguments_are_told_when_it_is_made():
-    with pytest.raises(RvmonError, match="room"):
-        Door(room=0)
-    with pytest.raises(RvmonError, match=r"use `rvmon.load.'door.rv'.`"):
-        Driver("door.rv")
-    with pytest.raises(UnknownNameError):
-        Door(only=["D9"])
-    with pytest.raises(UnknownNameError):
-        Door(sources=["sped"])
+@each(
+    ("make", "message"),
+    [
+        (lambda: Door(room=0), "room"),
+        (lambda: Driver("door.rv"), r"use `rvmon.load.'door.rv'.`"),
+        (lambda: Door(only=["D9"]), "no requirement `D9`"),
+        (lambda: Door(sources=["sped"]), "`sped`"),
+    ],
+)
+def test_wrong_arguments_are_refused(make, message):
+    with pytest.raises(RvmonError, match=message):
+        make()
 
 
-def test_what_is_no_sample_of_now_is_refused():
-    """Stamps since 1970 or of the next hour by a clock that began with 0; what has no names."""
+def test_stamps_far_ahead_of_the_clock_and_values_without_names_are_refused():
     driver = Driver(loads(DOOR))
     for seconds in (1_700_000_000, 3_600):
         with pytest.raises(TraceError, match="since_1970"):

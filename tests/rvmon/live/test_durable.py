@@ -1,4 +1,4 @@
-"""A run that goes on where its process was killed: no verdict is lost, changed or of nobody."""
+"""A run resumed after its process was killed: no verdict is lost, changed or invented."""
 
 import errno
 import os
@@ -19,7 +19,7 @@ SPEC = rvmon.loads(killed_watch.SPEC)
 
 
 def judged(path, fed, cuts, told, every=25):
-    """Feed samples; at each cut the monitor is left as it is, and another takes the run up."""
+    """Feed samples; at each cut the monitor is abandoned, and a new one resumes the run."""
     monitor = DurableMonitor(SPEC, path, told, every=every, settle="next")
     for number, (t, values) in enumerate(fed):
         if number in cuts:
@@ -33,12 +33,12 @@ def judged(path, fed, cuts, told, every=25):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(2))
-def test_a_run_that_is_cut_tells_what_a_whole_one_does(tmp_path, seed):
-    """Wherever it is cut, also behind refused samples: numbers, records, reasons are the same."""
+def test_an_interrupted_run_reports_the_same_as_a_whole_one(tmp_path, seed):
+    """Numbers, records and reasons are the same wherever it is cut, even after a refused sample."""
     rng = random.Random(seed)
     fed = [*killed_watch.samples(rng, 120)]
     whole, found = {}, {}
-    judged(tmp_path / "whole", fed, (), lambda n, one: whole.update({n: one}), 10_000)
+    judged(tmp_path / "whole", fed, (), whole.__setitem__, 10_000)
 
     def told(number, attempt):
         assert found.setdefault(number, attempt) == attempt
@@ -49,32 +49,39 @@ def test_a_run_that_is_cut_tells_what_a_whole_one_does(tmp_path, seed):
     assert found == whole
 
 
-@pytest.mark.parametrize("lost", [["p", "go"], None, []])
-def test_a_sample_that_is_lost_leaves_its_names_unknown(tmp_path, lost):
-    """Also to the process that goes on; with nothing lost there is a failure."""
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / "run"
+
+
+def remembering(path):
+    """A monitor that resumes a run, and the attempts that it reports."""
     told = []
-    monitor = DurableMonitor(SPEC, tmp_path / "run", print)
+    return DurableMonitor(SPEC, path, lambda *attempt: told.append(attempt)), told
+
+
+@pytest.mark.parametrize("lost", [["p", "go"], None, []])
+def test_missed_names_are_unknown_after_a_restart_too(path, lost):
+    monitor = DurableMonitor(SPEC, path, print)
     monitor.step_ns(0, {"speed": 0.5, "p": True})
     if lost != []:
         monitor.miss(lost)
-    monitor = DurableMonitor(SPEC, tmp_path / "run", lambda *one: told.append(one))
+    monitor, told = remembering(path)
     monitor.step_ns(9, {"go": True})
     monitor.step_ns(30_000_000, {})
     assert bool(told) is (lost == [])
 
 
-def test_what_was_saved_is_not_told_again(tmp_path):
-    """So a watch that came to its end tells nothing when it is begun again."""
-    told = []
-    monitor = DurableMonitor(SPEC, tmp_path / "run", lambda *one: told.append(one))
+def test_saved_attempts_are_not_reported_again(path):
+    monitor, told = remembering(path)
     monitor.step_ns(0, {"speed": 2.0})
     monitor.advance_ns(5)
     monitor.save()
-    DurableMonitor(SPEC, tmp_path / "run", lambda *one: told.append(one))
-    assert len(told) == 1
+    _, again = remembering(path)
+    assert (len(told), again) == (1, [])
 
 
-def test_files_and_values_that_are_none_are_told(tmp_path):
+def test_foreign_files_and_unusable_values_are_refused(tmp_path):
     (tmp_path / "text").write_text("a run\n")
     with pytest.raises(SnapshotError, match="text: no run of a monitor"):
         DurableMonitor(SPEC, tmp_path / "text", print)
@@ -91,30 +98,30 @@ def test_files_and_values_that_are_none_are_told(tmp_path):
     assert monitor.taken == 0
 
 
-def test_a_sample_that_is_damaged_in_the_file_is_told(tmp_path):
-    """Without it those behind cannot be judged; the last may be torn, and was not taken then."""
-    path, told = tmp_path / "run", []
+def test_a_damaged_line_is_an_error_unless_it_is_the_last(path):
+    """A torn last line is a sample that was never accepted."""
     monitor = DurableMonitor(SPEC, path, print)
     for t in range(3):
         monitor.step_ns(t, {"speed": 0.5})
     lines = path.read_bytes().splitlines(keepends=True)
     path.write_bytes(b"".join(lines)[:-3])
-    for taken in (2, 3):
-        monitor = DurableMonitor(SPEC, path, lambda *one: told.append(one))
-        assert monitor.taken == taken
-        if taken == 2:
-            monitor.step_ns(2, {"speed": 2.0})
-    assert [(number, one.name) for number, one in told] == [(1, "R2#1")] * 2
+    monitor, first = remembering(path)
+    assert monitor.taken == 2
+    monitor.step_ns(2, {"speed": 2.0})
+    monitor, second = remembering(path)
+    assert monitor.taken == 3
+    for told in (first, second):
+        assert [(number, attempt.name) for number, attempt in told] == [(1, "R2#1")]
     path.write_bytes(b"".join([*lines[:2], lines[2].replace(b"0.5", b"5.5"), *lines[3:]]))
     with pytest.raises(SnapshotError, match="run: line 3 is damaged, and not the last one"):
         DurableMonitor(SPEC, path, print)
 
 
 @pytest.mark.parametrize(("room", "every"), [(0, 99), (1, 99), (20, 99), (30, 2)])
-def test_a_sample_for_which_the_disk_has_no_room_changes_nothing(tmp_path, room, every):
-    """Also where a part of it, or of a snapshot, could be written: the caller may try again."""
+def test_a_sample_that_the_full_disk_refuses_changes_nothing(path, room, every):
+    """Even if a part of it, or of a snapshot, was written. The caller may try again."""
     resource = pytest.importorskip("resource", reason="limits of a process")
-    path, told, before = tmp_path / "run", [], resource.getrlimit(resource.RLIMIT_FSIZE)
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
     monitor = DurableMonitor(SPEC, path, print, every=every)
     for t in range(2):
         monitor.step_ns(t, {"speed": 0.5})
@@ -128,13 +135,13 @@ def test_a_sample_for_which_the_disk_has_no_room_changes_nothing(tmp_path, room,
     assert (path.read_bytes(), monitor.taken) == (kept, 2)
     for t in (2, 3):
         monitor.step_ns(t, {"speed": 2.0})
-    monitor = DurableMonitor(SPEC, path, lambda *one: told.append(one))
-    assert (monitor.taken, [one.name for _, one in told]) == (4, ["R2#1"])
+    monitor, told = remembering(path)
+    assert (monitor.taken, [attempt.name for _, attempt in told]) == (4, ["R2#1"])
 
 
 @pytest.fixture
 def watched(tmp_path, says):
-    """Write lines, and watch them with a state by a command that is to end with a code."""
+    """Write lines and watch them with `--state`; takes the expected exit code."""
     (tmp_path / "s.rv").write_text("signal x : real\nrequirement R\n  always x < 5\n")
 
     def watch(code, lines, *words):
@@ -148,7 +155,7 @@ def watched(tmp_path, says):
 @pytest.mark.parametrize(
     ("line", "told"), [('{"t": 9, "x": ', "dropped once"), ('{"t": 1, "x": 9}', "late once")]
 )
-def test_a_watch_that_lost_a_line_is_no_success(watched, line, told):
+def test_a_lost_line_fails_this_watch_and_all_resumed_ones(watched, line, told):
     text = '{"t": 0, "x": 1}\n{"t": 8, "x": 1}\n'
     for more, code in (("", 0), (line + "\n", 1), ('{"t": 12, "x": 1}\n', 1)):
         text += more
@@ -156,18 +163,17 @@ def test_a_watch_that_lost_a_line_is_no_success(watched, line, told):
 
 
 @pytest.mark.parametrize(("rows", "is_same"), [(7, False), (20, False), (0, True)])
-def test_a_watch_goes_on_in_no_other_file(watched, rows, is_same):
-    """As of a log that was put away: lines of the new one would pass for those that were taken."""
+def test_a_watch_is_not_resumed_with_another_file(watched, rows, is_same):
+    """After a rotation, lines of the new log would be skipped as already evaluated."""
     text = "".join(f'{{"t": {t}, "x": 1}}\n' for t in range(10))
-    watched(1, f'{text}{{"t": 10, "x"')  # is being written
+    watched(1, f'{text}{{"t": 10, "x"')  # the last line is still being written
     other = "".join(f'{{"t": {t}, "x": 9}}\n' for t in range(20, 20 + rows))
     other = other or f'{text}{{"t": 10, "x": 1}}\n{{"t": 11, "x": 1}}\n'
     told = watched(1 if is_same else 2, other).err
     assert ("is not the file whose first 11 lines were evaluated" in told) is not is_same
 
 
-def test_a_verdict_that_cannot_be_written_is_told_by_the_next_process(watched, monkeypatch):
-    """Its disk is full, or its reader has left: the state does not count it as told."""
+def test_a_verdict_that_could_not_be_written_is_reported_by_the_next_watch(watched, monkeypatch):
 
     def full(*_, **__):
         raise OSError(errno.ENOSPC, "No space left on device")
@@ -179,22 +185,22 @@ def test_a_verdict_that_cannot_be_written_is_told_by_the_next_process(watched, m
     assert "R#1 F" in watched(1, text).out
 
 
-def test_a_watch_that_goes_on_with_a_pipe_has_lost_what_came_meanwhile(watched, tmp_path):
-    """The process before may have taken lines that it did not judge; to a file it is told."""
+def test_a_watch_resumed_with_a_pipe_reports_a_loss(watched, tmp_path):
+    """The previous process may have read lines that it did not evaluate."""
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
-    for t, code, is_told in ((0, 0, False), (9, 1, True)):
+    for t, code, is_lost in ((0, 0, False), (9, 1, True)):
         text = f'{{"t": {t}, "x": 1}}\n{{"t": {t + 1}, "x": 1}}\n'
         writing = Thread(target=pipe.write_text, args=(text,))
         writing.start()
         told = watched(code, "", str(pipe)).err
         writing.join()
-        assert ("lines that arrived after its last one are lost" in told) is is_told
-        assert ("dropped once, first at 1 s" in told) is is_told
+        assert ("lines that arrived after its last one are lost" in told) is is_lost
+        assert ("dropped once, first at 1 s" in told) is is_lost
 
 
 @pytest.mark.process
-def test_a_watch_that_is_killed_goes_on(tmp_path):
+def test_a_killed_and_resumed_watch_reports_the_same_as_a_whole_one(tmp_path):
     killed_watch.written(tmp_path, seed=1, count=150)
     expected, found, kills = killed_watch.killed(tmp_path, kills=3, seed=1)
     assert kills > 0
@@ -202,8 +208,8 @@ def test_a_watch_that_is_killed_goes_on(tmp_path):
     assert found == expected
 
 
-def test_a_kept_run_goes_on_with_the_same_requirements(tmp_path, says):
-    """Others have heard nothing of what came before: they would pass, or be left out unsaid."""
+def test_a_run_is_resumed_with_the_same_requirements_only(tmp_path, says):
+    """Requirements that have not seen the earlier samples might pass wrongly."""
     (tmp_path / "s.rv").write_text(killed_watch.SPEC)
     (tmp_path / "a.jsonl").write_text('{"t": 0, "speed": 0.5}\n{"t": 1, "speed": 0.5}\n')
     words = "watch", tmp_path / "s.rv", tmp_path / "a.jsonl", "--state", tmp_path / "run"
@@ -213,8 +219,8 @@ def test_a_kept_run_goes_on_with_the_same_requirements(tmp_path, says):
     says(0, *words, "--only", "R3,R1")
 
 
-def test_what_fails_by_the_last_line_is_no_success(watched):
-    """Its verdict waits for a line with a later stamp, as another may have the same."""
+def test_a_failure_at_the_last_line_fails_the_watch(watched):
+    """Its verdict waits for a later stamp, as another line may have the same one."""
     assert "it has no lines" in watched(2, "\n").err
     text = '{"t": 0, "x": 1}\n{"t": 1, "x": 9}\n'
     told = watched(1, text)
@@ -232,7 +238,6 @@ def test_what_fails_by_the_last_line_is_no_success(watched):
         (["mqtt://localhost/#"], "a pipe or a file"),
     ],
 )
-def test_what_does_not_go_with_a_state_is_refused(watched, tmp_path, words, message):
-    """Instead of being judged otherwise than it was asked."""
+def test_options_that_state_excludes_are_refused(watched, tmp_path, words, message):
     assert message in watched(2, "", *words).err
     assert not (tmp_path / "run").exists()

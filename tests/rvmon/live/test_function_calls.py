@@ -1,4 +1,4 @@
-"""Calls of functions as events."""
+"""`as_event` reports calls of functions as events."""
 
 import asyncio
 
@@ -36,7 +36,7 @@ def test_a_call_is_an_event_with_its_arguments(driver):
     assert _verdict(driver) is Verdict.PASS
 
 
-def test_a_call_that_raises_has_not_ended_and_a_coroutine_when_it_was_awaited(driver):
+def test_a_coroutine_ends_once_awaited_unless_it_raises(driver):
     @as_event(driver, "grip", ended="gripped", payload=lambda width: {"width": 1 / width})
     async def close_gripper(width):
         await asyncio.sleep(0)
@@ -50,8 +50,7 @@ def test_a_call_that_raises_has_not_ended_and_a_coroutine_when_it_was_awaited(dr
     assert _verdict(driver) is Verdict.PASS
 
 
-def test_a_generator_ends_when_it_has_given_all():
-    """Not when it is made, nor where it is left before."""
+def test_a_generator_ends_only_when_it_is_exhausted():
     clock = SimulatedClock()
     driver = Driver(loads(SPEC), clock=clock)
 
@@ -72,9 +71,7 @@ def test_a_generator_ends_when_it_has_given_all():
     assert (status.counts["R", Verdict.PASS], status.open_counts["R"], status.samples) == (1, 1, 3)
 
 
-def test_a_monitor_stops_no_call(driver, caplog):
-    """Neither a payload that cannot be made nor one that was closed: both are told."""
-
+def test_neither_a_wrong_payload_nor_a_closed_driver_stops_a_call(driver, caplog):
     @as_event(driver, "grip", payload=lambda width: {"width": 1 / width})
     def close_gripper(width):
         return width
@@ -85,7 +82,7 @@ def test_a_monitor_stops_no_call(driver, caplog):
     assert [record.args[0] for record in caplog.records if record.args] == ["grip", "grip"]
 
 
-def test_what_is_no_function_is_refused(driver):
+def test_classes_asynchronous_generators_and_values_are_refused(driver):
     async def asynchronous():
         yield 1
 

@@ -1,4 +1,4 @@
-"""What a driver says of random samples, beside a monitor."""
+"""A driver and a monitor agree on random samples."""
 
 import random
 
@@ -14,7 +14,7 @@ pytestmark = pytest.mark.law
 
 
 def _driven(spec, case, rng):
-    """A driver that was offered the samples of a case as they are stamped."""
+    """A driver that was offered the samples of a case at their stamps."""
     clock = SimulatedClock(case.samples[0].t)
     driver = Driver(spec, clock=clock, keep=None, sources=case.names)
     for sample in case.samples:
@@ -28,7 +28,7 @@ def _driven(spec, case, rng):
 
 
 def _monitored(spec, case, end):
-    """What a monitor says that was told everything."""
+    """The report of a monitor on the same samples."""
     monitor = spec.monitor(settle="next", sources=case.names)
     for sample in case.samples:
         monitor.step_ns(sample.t, sample.values)
@@ -36,8 +36,8 @@ def _monitored(spec, case, end):
     return monitor.finish_ns()
 
 
-def test_a_driver_judges_as_a_monitor():
-    """With room; that without it loss hides no failure is shown in `laws/test_doors.py`."""
+def test_a_driver_with_room_gives_the_report_of_a_monitor():
+    """Loss for lack of room is tested in `laws/test_doors.py`."""
     judged = 0
     for number in range(60):
         seed = f"live/{number}"

@@ -1,4 +1,4 @@
-"""Live monitors in a thread of their own, offered samples from others, and in an event loop."""
+"""Live monitors in their own thread or in an event loop, with samples from other threads."""
 
 import asyncio
 import threading
@@ -18,7 +18,7 @@ requirement R2
   then within 20 ms b
 """
 LONG = 30.0
-"""Seconds after which a test that waits has failed."""
+"""Seconds after which waiting fails."""
 
 
 def test_a_deadline_passes_in_real_time_without_samples():
@@ -28,8 +28,7 @@ def test_a_deadline_passes_in_real_time_without_samples():
         assert failed.wait(LONG)
 
 
-def test_a_wall_clock_that_is_coarse_gives_each_report_an_instant_of_its_own(monkeypatch):
-    """What was offered, lost and found within one of its steps keeps its order."""
+def test_calls_within_one_step_of_a_coarse_clock_keep_their_order(monkeypatch):
     monkeypatch.setattr(time, "monotonic_ns", lambda: 7)
     driver = Driver(loads(SPEC))
     driver.offer({"a": True, "x": 0.5})
@@ -39,13 +38,13 @@ def test_a_wall_clock_that_is_coarse_gives_each_report_an_instant_of_its_own(mon
     driver.found(["x"])
     driver.offer({"b": True, "x": 0.5})
     (report,) = driver.close()[""]
-    answered = [one for one in report.attempts if one.requirement == "R2"]
-    assert [(one.triggered, one.decided) for one in answered] == [(0, 5), (1, 5), (3, 5)]
-    assert [one.first for one in report.health] == [2]
+    answered = [attempt for attempt in report.attempts if attempt.requirement == "R2"]
+    found = [(attempt.triggered, attempt.decided) for attempt in answered]
+    assert found == [(0, 5), (1, 5), (3, 5)]
+    assert [entry.first for entry in report.health] == [2]
 
 
-def test_samples_of_many_threads_are_all_judged():
-    """Who waits for room loses nothing."""
+def test_threads_that_wait_for_room_lose_no_sample():
     with Live(loads(SPEC), room=3) as live:
         threads = [
             threading.Thread(target=lambda: [live.offer({"x": 0.5}, wait=True) for _ in range(500)])
@@ -60,7 +59,7 @@ def test_samples_of_many_threads_are_all_judged():
     assert live.close()[""][0].verdicts["R1"] is Verdict.PASS
 
 
-def test_a_callback_that_closes_is_refused_and_nothing_hangs():
+def test_a_callback_cannot_close_the_monitor():
     """It runs in the thread that would have to end."""
     told = threading.Event()
     live = Live(loads(SPEC), on_failure=lambda _: (told.set(), live.close()))
@@ -70,8 +69,7 @@ def test_a_callback_that_closes_is_refused_and_nothing_hangs():
     assert live.errors == 1
 
 
-def test_a_slow_callback_costs_samples_that_are_counted():
-    """And no verdict that needs them; who offers is never held up."""
+def test_samples_lost_to_a_slow_callback_are_counted_and_leave_verdicts_open():
     goes_on = threading.Event()
     spec = loads(SPEC.replace("20 ms", "2 s"))
     with Live(spec, room=10, on_failure=lambda _: goes_on.wait(LONG)) as live:
@@ -102,9 +100,7 @@ def test_a_deadline_passes_in_the_loop():
     asyncio.run(main())
 
 
-def test_samples_may_come_from_other_threads_up_to_the_last_moment():
-    """They are judged in the loop, also where the body raised."""
-
+def test_samples_from_other_threads_are_evaluated_even_if_the_body_raises():
     async def main():
         try:
             async with LiveTasks(loads(SPEC)) as live:
