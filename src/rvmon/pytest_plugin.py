@@ -58,7 +58,8 @@ class Judge:
         self._expect = dict(expect or {})
         for name, wanted in self._expect.items():
             if name not in spec.requirements:
-                raise UnknownNameError(f"no requirement {name}: {', '.join(spec.requirements)}")
+                there = ", ".join(spec.requirements)
+                raise UnknownNameError(f"no requirement `{name}`: there are {there}")
             if wanted not in ("P", "F", "NT", "I"):
                 raise UnknownNameError(f"{name}: no verdict {wanted!r}: P, F, NT, I")
         self._monitor: Monitor | None = None

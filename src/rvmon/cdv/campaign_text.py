@@ -100,7 +100,7 @@ def _print_in_short(
         passed = sum(bool(verdicts[Verdict.PASS]) for verdicts in rest.values())
         printer.sentences(
             f"{len(rest)} further requirements: {passed} passed wherever they were triggered, "
-            f"{len(rest) - passed} never were; with --out all of them are in table.txt.\n"
+            f"{len(rest) - passed} never were; table.txt, which --out writes, has all of them.\n"
         )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from struct import pack
@@ -117,7 +118,7 @@ def layout_of(header: Sequence[str], stamps: Stamps, schema: Schema) -> Layout:
             events.append(Column(index, name, None, Kind.BOOL))
         elif field in schema.events.get(event, {}):
             events.append(Column(index, event, field, schema.events[event][field]))
-        else:
+        elif column:  # one without a name is the index of a data frame
             ignored.append(column)
     return Layout(
         tuple(header),
@@ -207,7 +208,9 @@ def read_row(row: list[str], layout: Layout) -> tuple[int, dict[str, Value]]:
         TraceError: a cell is missing or cannot be read; the message names the column.
     """
     if len(row) != len(layout.header):
-        raise TraceError(f"{len(row)} cells where the header has {len(layout.header)}")
+        split = len(row) > len(layout.header) and all(re.fullmatch(r"[-+]?\d+", one) for one in row)
+        fix = ": if the comma is the decimal sign, separate the cells by `;`" if split else ""
+        raise TraceError(f"{len(row)} cells where the header has {len(layout.header)}{fix}")
     t = ticks_of_cell(row[layout.time], layout.stamps)
     no_update = layout.gaps.no_update
     absent = "" if no_update is None else str(no_update)

@@ -199,7 +199,8 @@ def stamps_among(names: Collection[str], schema: Schema) -> Stamps:
         TraceError: there is none, or there are two.
     """
     stamps = schema.stamps
-    listed = ", ".join(f"`{shorten(name)}`" for name in list(names)[:8]) or "nothing"
+    shown = [f"`{shorten(name)}`" if name else "one without a name" for name in list(names)[:8]]
+    listed = ", ".join(shown) or "nothing"
     if stamps is not None:
         if stamps.column in names:
             return stamps
@@ -209,11 +210,12 @@ def stamps_among(names: Collection[str], schema: Schema) -> Stamps:
         raise TraceError(f"no time column `{shorten(stamps.column)}`: {meant}{units}")
     times = [name for name in DEFAULT_COLUMNS if name in names]
     if len(times) != 1:
-        close = [name for name in names if re.search(r"time|stamp|^sec", name, re.IGNORECASE)]
+        close = [name for name in names if re.search(r"time|stamp|^sec|^t$", name, re.IGNORECASE)]
         which = f": `{shorten(close[0])}` looks like it" if close and not times else ""
+        nameless = " (:UNIT for the one without a name)" if "" in names else ""
         raise TraceError(
             "expected one time column, `t` (seconds) or `t_ns` (integer nanoseconds), found "
             f"{'both' if times else listed}{which}: name {'one of them' if times else 'it'} with "
-            "--time COLUMN[:UNIT], in Python time=…"
+            f"--time COLUMN[:UNIT]{nameless}, in Python time=…"
         )
     return stamps_of(times[0])

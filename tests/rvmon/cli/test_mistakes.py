@@ -226,6 +226,7 @@ MISTAKES = {
     "verify": [
         ("gone.ta", "No such file"),
         ("lamp.ta --query 'E<> Nobody.safe'", "no automaton `Nobody`"),
+        ("lamp.ta --query 'E<> Nobody.safe'", "help: there are Lamp"),
         ("lamp.ta --query cross", "no query `cross`\nhelp: it has "),
         ("lamp.ta --query Lamp.on", "a query refers to runs"),
         ("lamp.ta --query lit,dead", "write --query lit --query dead"),

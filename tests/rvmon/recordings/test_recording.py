@@ -26,7 +26,7 @@ def read(tmp_path: Path, name: str, text: str | bytes, *, ordered: bool = True):
 
 
 def test_undeclared_columns_are_ignored_and_counted(tmp_path):
-    recording, samples = read(tmp_path, "a.csv", "t,ok,battery\n0,1,7\n")
+    recording, samples = read(tmp_path, "a.csv", "t,ok,battery,\n0,1,7,3\n")
     assert samples == [(0, {"ok": True})]
     assert [(h.kind, h.name) for h in recording.health()] == [(HealthKind.IGNORED, "battery")]
     assert recording.names == {"ok"}
@@ -87,10 +87,13 @@ BAD = {
     "empty file": ("a.csv", "", "is empty"),
     "header only": ("a.csv", "t,n\n", "holds no sample"),
     "no time column": ("a.csv", "n,ok\n1,1\n", "expected one time column"),
+    "time of another case": ("a.csv", "T,n\n1,1\n", "found `T`, `n`: `T` looks like it"),
+    "time without a name": ("a.csv", ",n\n1,1\n", "found one without a name, `n`"),
     "both time columns": ("a.csv", "t,t_ns\n1,1\n", "found both"),
     "double column": ("a.csv", "t,n,n\n1,1,1\n", "`n` appears twice"),
     "no header": ("a.csv", "0,1,1\n1,1,1\n", "`1` appears twice in the header: are these values?"),
     "short row": ("a.csv", "t,n,ok\n1,1\n", "line 2: 2 cells where the header has 3"),
+    "decimal commas": ("a.csv", "t,n,ok\n0,1,1,5\n", "header has 3: if the comma is the decimal"),
     "underscored number": ("a.csv", "t,n\n0,1_0\n", "`1_0` is not a whole number"),
     "underscored time": ("a.csv", "t,n\n1_0,1\n", "line 2: time `1_0` is not a number"),
     "underscored ticks": ("a.csv", "t_ns,n\n1_0,1\n", "line 2: time `1_0` is not a whole"),

@@ -123,7 +123,7 @@ def _words(terminals: set[str]) -> str:
     if "RELATION" in terminals:
         words.append("an operator")
         terminals = terminals - _OPERATORS
-    words += sorted(filter(None, map(_word, terminals)))
+    words += sorted(set(filter(None, map(_word, terminals))))
     return " or ".join(words) if len(words) <= 8 else ""
 
 

@@ -293,6 +293,8 @@ def automaton_at(
         fix = "only queries do: set a variable where it is entered and left, and read that"
         raise model_error("TA002", message, span, fix)
     if key not in automata:
-        fix = did_you_mean(key[0], sorted({name for name, _ in automata}))
+        names = sorted({name for name, _ in automata})
+        listed = ", ".join(names[:12]) + ", …" * (len(names) > 12)
+        fix = did_you_mean(key[0], names, f"there are {listed}")
         raise model_error("TA002", f"no automaton `{span.text}`", span, fix)
     return automata[key]
