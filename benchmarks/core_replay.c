@@ -7,7 +7,7 @@
  * and measured, and letters for faults. a, o, k, m: the results differ with queries or after a reset, by
  * rows, from snapshots, in a block. d: time alone decided something that was not due. f, t: a sample was
  * accepted after the end, or twice. g: a run short of memory was green. r, s: rows, or a step, refused. */
-#include "../fuzz/told.h"
+#include "../fuzz/checksum.h"
 
 #include "plan/plan.h"
 
@@ -48,9 +48,9 @@ typedef struct {
     uint64_t sum;
     uint64_t open;             /* checksum of what was open in between */
     char wrong[8];
-} told;
+} outcome;
 
-static void blame(told *x, char letter)
+static void blame(outcome *x, char letter)
 {
     const size_t length = strlen(x->wrong);
     if ((length + 1 < sizeof x->wrong) && (strchr(x->wrong, letter) == NULL)) {
@@ -59,7 +59,7 @@ static void blame(told *x, char letter)
     }
 }
 
-static void add(told *x, int64_t what)
+static void add(outcome *x, int64_t what)
 {
     x->sum = mixed(x->sum, what);
 }
@@ -143,7 +143,7 @@ static const int64_t *read_story(const int64_t *at, story *x)
     return at;
 }
 
-static void note_number(told *x, const rv_number *n)
+static void note_number(outcome *x, const rv_number *n)
 {
     int64_t bits = 0;
     if (n->kind != RV_UNKNOWN) {
@@ -170,7 +170,7 @@ static int tell(rv_monitor *m, const action *a)
 }
 
 /* Take the records of a call, with notes and margins. Before `due`, time alone decides nothing. */
-static void note_records(told *x, rv_monitor *m, int64_t due, int64_t t)
+static void note_records(outcome *x, rv_monitor *m, int64_t due, int64_t t)
 {
     const rv_record *records;
     const int64_t count = rv_records(m, &records);
@@ -205,14 +205,14 @@ static bool note_open(void *user, const rv_record *record, const rv_number *capt
 }
 
 /* A call that has to succeed if there is enough memory. */
-static void demand(told *x, const rv_monitor *m, int code)
+static void demand(outcome *x, const rv_monitor *m, int code)
 {
     if (code != (rv_spoilt(m) ? RV_NO_MEMORY : RV_OK)) {
         blame(x, 's');
     }
 }
 
-static void note_end(told *x, rv_monitor *m, const story *s)
+static void note_end(outcome *x, rv_monitor *m, const story *s)
 {
     const int32_t requirements = rv_sizes_of(m).requirements;
     int32_t i;
@@ -235,7 +235,7 @@ static void note_end(told *x, rv_monitor *m, const story *s)
 static const rv_memory heap = {malloc, realloc, free, NULL, 0};
 
 /* Continue in a new monitor from a snapshot of the old one, which is freed. */
-static rv_monitor *taken_up(told *x, rv_monitor *m, const story *s)
+static rv_monitor *taken_up(outcome *x, rv_monitor *m, const story *s)
 {
     const size_t size = rv_save(m, NULL, 0);
     void *bytes = malloc(size + 1U);
@@ -256,10 +256,10 @@ static rv_monitor *taken_up(told *x, rv_monitor *m, const story *s)
 }
 
 /* Step by step. `asks`: query what is open and due in between. `put_away`: continue from snapshots. */
-static told by_steps(rv_monitor **own, const story *s, bool asks, bool put_away)
+static outcome by_steps(rv_monitor **own, const story *s, bool asks, bool put_away)
 {
     rv_monitor *m = *own;
-    told x = {1, 0, ""};
+    outcome x = {1, 0, ""};
     int64_t due = RV_NO_TIME;
     int64_t i;
     for (i = 0; i < s->count; i++) {
@@ -344,7 +344,7 @@ static rv_column column_of(const cells *c)
     return made;
 }
 
-static void judge_table(told *x, rv_monitor *m, table *made)
+static void judge_table(outcome *x, rv_monitor *m, table *made)
 {
     static rv_column columns[NAMES_MOST];
     static rv_column fields[NAMES_MOST][FIELDS_MOST];
@@ -368,10 +368,10 @@ static void judge_table(told *x, rv_monitor *m, table *made)
 }
 
 /* By rows: consecutive samples without repeated names are judged as one table. */
-static told by_rows(rv_monitor *m, const story *s)
+static outcome by_rows(rv_monitor *m, const story *s)
 {
     static table made;
-    told x = {1, 0, ""};
+    outcome x = {1, 0, ""};
     int64_t i;
     (void)memset(&made, 0, sizeof made);
     for (i = 0; i < s->count; i++) {
@@ -397,7 +397,7 @@ static void mark_absent(rv_monitor *m, const story *s)
 }
 
 /* Add the faults of another way, and `letter` if its results differ. */
-static void blame_other(told *x, const told *other, char letter)
+static void blame_other(outcome *x, const outcome *other, char letter)
 {
     size_t i;
     for (i = 0; other->wrong[i] != '\0'; i++) {
@@ -412,8 +412,8 @@ static void judge(const story *s)
 {
     static char block[1 << 20];
     rv_monitor *m = rv_new(s->plan, s->size, heap);
-    told whole;
-    told other;
+    outcome whole;
+    outcome other;
     size_t used;
     size_t size;
     if (m == NULL) {

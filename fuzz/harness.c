@@ -6,7 +6,7 @@
  * from snapshots now and then; both must give the same results. Then it is repeated with limited
  * memory, and must not be green. With -DSNAPSHOTS the first byte also selects a plan, and the others
  * are a snapshot without its head, which is added. If it is accepted, it judges some samples. */
-#include "told.h"
+#include "checksum.h"
 
 #include "plan/plan.h"
 

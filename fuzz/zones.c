@@ -9,7 +9,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-static bool goes_on(void *context, uint64_t visited, uint64_t waiting)
+static bool continues(void *context, uint64_t visited, uint64_t waiting)
 {
     int *left = context;
     (void)visited;
@@ -30,7 +30,7 @@ static int diverges(void *context, const numbers *path, int32_t loop, const int6
 static answer searched(const int32_t *plan, const double *costs, bool wide, uint64_t most_bytes)
 {
     int left = 20;
-    caller from = {&left, goes_on, diverges, 300, most_bytes, false};
+    caller from = {&left, continues, diverges, 300, most_bytes, false};
     from.proper_only = (plan[HEAD_BOUND] % 2) == 1;
     return wide ? search_wide(plan, costs, &from) : search_narrow(plan, costs, &from);
 }

@@ -28,9 +28,9 @@ static inline int64_t whole_steps(int64_t duration, int64_t step)
     return (step == 1) ? duration : duration / step * step; /* the common case, without a division */
 }
 
-static inline bool is_within(int64_t x, int64_t low, int64_t behind)
+static inline bool is_within(int64_t x, int64_t low, int64_t end)
 {
-    return (x >= low) && (x < behind);
+    return (x >= low) && (x < end);
 }
 
 static inline int64_t least(int64_t a, int64_t b)

@@ -74,11 +74,11 @@ typedef struct {
 } silence;
 
 /* A walk through `counted`, while attempts are numbered in their order: entries below index `over` lie
- * before the attempt, those from index `begun` on after it. */
+ * before the attempt, those from index `started` on after it. */
 typedef struct {
     int64_t before;            /* attempts in the entries below `over` */
     int32_t over;
-    int32_t begun;
+    int32_t started;
 } numbering;
 
 /* Inclusive ranges of positions, disjoint and ascending. */
@@ -122,7 +122,7 @@ typedef struct {
     int64_t turn;
     int64_t searched;          /* when it was last searched for a decision, or a letter came */
     int32_t visits;
-    bool begun;
+    bool started;
     bool parted;
 } networks;
 
@@ -132,9 +132,9 @@ typedef struct {
     int32_t room;              /* a power of two, or 0 */
     int32_t head;
     int32_t count;
-    int32_t asked;             /* how many lie before the position last queried, as queries mostly
+    int32_t cursor;            /* how many lie before the position last queried, as queries mostly
                                 * ascend */
-    bool begun;                /* the value before the first change */
+    bool initial;              /* the value before the first change */
 } changes;
 
 /* One reading of a chain of windows: for each nesting level, where its value changes if the letter
@@ -155,7 +155,7 @@ typedef struct {
     uint8_t letter[3];         /* innermost operand and the two leaves, in bits: 1, true in the worse
                                 * reading; 2, in the better */
     int32_t kept;              /* letters since old knowledge was last dropped */
-    bool begun;
+    bool started;
     bool parted;
 } chain;
 
@@ -200,7 +200,7 @@ typedef struct {
     int32_t location;
     uint32_t sliding;          /* by clock, whether each tick resets it while the letter stays */
     bool rests;                /* the next equal letter leaves it there */
-} beginning;
+} attempt_start;
 
 typedef struct {
     queued *items;             /* a ring, the oldest first */
@@ -210,7 +210,7 @@ typedef struct {
     int32_t count;
     segments now;
     segments next;             /* scratch: what a step makes of them */
-    beginning latest;          /* of the attempt that started last */
+    attempt_start latest;      /* of the attempt that started last */
 } queue;
 
 /* Truths of a judge's leaves at some instants, ascending, in a ring. An entry is the instant, then
@@ -285,7 +285,7 @@ typedef struct {
 typedef struct {
     logged_node *nodes;
     int64_t moved_at;          /* position of the last change of any of them */
-    int64_t begun;             /* an instance created late has no history before this position;
+    int64_t since;             /* an instance created late has no history before this position;
                                 * RV_NO_TIME: it saw the whole run */
 } truth_log;
 

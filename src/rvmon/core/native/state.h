@@ -207,12 +207,12 @@ struct run {
     int32_t *changed_inputs;   /* judges whose leaves may have changed */
     int64_t measured_at;       /* the position up to which margins are known */
     int32_t changed_count;
-    int32_t asked;             /* attempts whose margins are still to come */
+    int32_t pending_margins;   /* attempts whose margins are still to come */
     /* Scalars that a fork copies, too. */
     struct progress {
         int64_t origin;        /* the first position, or the first one that may exist */
         int64_t dense_from;    /* the first tick that may be a position (`dense`) */
-        int64_t begun;         /* the first position that certainly exists; NEVER */
+        int64_t sure_from;     /* the first position that certainly exists; NEVER */
         int64_t position;      /* the position visited last */
         int64_t before;        /* the position before the current one */
         int64_t alarm;         /* nothing happens before this instant unless an input changes */

@@ -284,7 +284,7 @@ static void count_work(engine *h)
     h->work += (uint64_t)h->entries + 16;
     if (h->work >= (UINT64_C(1) << 18)) {
         h->work = 0;
-        if (!h->from->goes_on(h->from->context, h->visited,
+        if (!h->from->continues(h->from->context, h->visited,
                               (uint64_t)(h->queue_end - h->queue_head) + h->heap_count
                                   + h->frame_count)
             && (h->state == SEARCH_RUNS)) {

@@ -8,7 +8,7 @@
 #endif
 
 typedef struct {
-    PyObject *goes_on;
+    PyObject *continues;
     PyObject *diverges;
     PyThreadState *thread;
 } callbacks;
@@ -30,12 +30,12 @@ static long ask(PyObject *function, PyObject *arguments)
     return (PyErr_Occurred() != NULL) ? -1 : number;
 }
 
-static bool goes_on(void *context, uint64_t visited, uint64_t waiting)
+static bool continues(void *context, uint64_t visited, uint64_t waiting)
 {
     callbacks *c = context;
     long on;
     PyEval_RestoreThread(c->thread);
-    on = ask(c->goes_on, Py_BuildValue("(LL)", (long long)visited, (long long)waiting));
+    on = ask(c->continues, Py_BuildValue("(LL)", (long long)visited, (long long)waiting));
     c->thread = PyEval_SaveThread();
     return on > 0;
 }
@@ -97,7 +97,7 @@ static bool taken(const Py_buffer *plan, const Py_buffer *costs, int32_t **numbe
     return state == PLAN_GOOD;
 }
 
-/* search(plan, costs, goes_on, diverges, most_states, most_bytes, proper_only), as described in zones.h.
+/* search(plan, costs, continues, diverges, most_states, most_bytes, proper_only), as described in zones.h.
  * Returns state, ending, loop, improper, visited, stored, discrete states, peak of bytes in use, and as
  * bytes path, parts and spans. */
 static PyObject *zones_search(PyObject *module, PyObject *args)
@@ -113,14 +113,14 @@ static PyObject *zones_search(PyObject *module, PyObject *args)
     double *costs_of = NULL;
     PyObject *made = NULL;
     (void)module;
-    if (!PyArg_ParseTuple(args, "y*y*OOLLi", &plan, &costs, &c.goes_on, &c.diverges, &most_states,
+    if (!PyArg_ParseTuple(args, "y*y*OOLLi", &plan, &costs, &c.continues, &c.diverges, &most_states,
                           &most_bytes, &proper_only)) {
         return NULL;
     }
     if (taken(&plan, &costs, &numbers_of, &costs_of)) {
         answer found;
         from.context = &c;
-        from.goes_on = goes_on;
+        from.continues = continues;
         from.diverges = diverges;
         from.most_states = (most_states < 0) ? UINT64_MAX : (uint64_t)most_states;
         from.most_bytes = (most_bytes < 0) ? UINT64_MAX : (uint64_t)most_bytes;

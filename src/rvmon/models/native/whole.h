@@ -153,7 +153,7 @@ static void begin(engine *h)
         w->zone[i] = AT_ONCE;
     }
     copy_spot(h, &w->here, &w->there);
-    if (!h->from->goes_on(h->from->context, 0, 0)) {
+    if (!h->from->continues(h->from->context, 0, 0)) {
         h->state = SEARCH_STOPPED;
     }
 }

@@ -49,11 +49,11 @@ typedef struct {
     struct held *memory; /* owns all memory of the search */
 } answer;
 
-/* The caller of a search. `goes_on` is called from time to time, and stops the search by returning false.
+/* The caller of a search. `continues` is called from time to time, and stops the search by returning false.
  * `diverges` is called with a loop: it returns 1 if time diverges on the loop, 0 if not, -1 to stop. */
 typedef struct {
     void *context;
-    bool (*goes_on)(void *context, uint64_t visited, uint64_t waiting);
+    bool (*continues)(void *context, uint64_t visited, uint64_t waiting);
     int (*diverges)(void *context, const numbers *path, int32_t loop, const int64_t *head,
                     uint32_t dim);
     uint64_t most_states;

@@ -187,17 +187,17 @@ int64_t settle_token(const machine *a, token *k, int64_t t, int64_t until)
 
 /* Whether a step from (`was`, `before`) was a loop: same location, and each clock stayed or moved by
  * one step (`slides`). The same edge is then taken until a clock that stayed reaches a cut. */
-static bool loops(const machine *a, int32_t was, const int64_t *before, const token *behind,
+static bool loops(const machine *a, int32_t was, const int64_t *before, const token *after,
                   bool *slides)
 {
-    const int32_t width = a->widths[behind->location];
-    bool loop = was == behind->location;
+    const int32_t width = a->widths[after->location];
+    bool loop = was == after->location;
     int32_t c;
     *slides = false;
     for (c = 0; loop && (c < width); c++) {
-        if (behind->clocks[c] != before[c]) {
+        if (after->clocks[c] != before[c]) {
             *slides = true;
-            loop = behind->clocks[c] == before[c] + a->step;
+            loop = after->clocks[c] == before[c] + a->step;
         }
     }
     return loop;

@@ -158,9 +158,9 @@ segment *next_segment(rv_monitor *m, segments *all)
 }
 
 /* Where an attempt stands that begins at `t` by the letter there. */
-static const beginning *begun_at(const queueing *g, int64_t t)
+static const attempt_start *start_at(const queueing *g, int64_t t)
 {
-    beginning *b = &g->q->latest;
+    attempt_start *b = &g->q->latest;
     if (b->letter != g->j->letter) {
         int64_t clocks[QUEUED_CLOCKS];
         int64_t due = NEVER;
@@ -190,7 +190,7 @@ static const beginning *begun_at(const queueing *g, int64_t t)
 }
 
 /* The state in a location all of whose clocks began with the trigger, and some of which each tick resets. */
-static void set_begun(segment *s, int32_t location, uint32_t sliding)
+static void set_started(segment *s, int32_t location, uint32_t sliding)
 {
     int32_t c;
     s->location = location;
@@ -201,7 +201,7 @@ static void set_begun(segment *s, int32_t location, uint32_t sliding)
 }
 
 /* Whether an attempt that begins at `t` is in the state of a segment. */
-static bool begins_in(const queueing *g, const beginning *b, const segment *s, int64_t t)
+static bool starts_in(const queueing *g, const attempt_start *b, const segment *s, int64_t t)
 {
     bool same = s->location == b->location;
     int32_t c;
@@ -232,7 +232,7 @@ static void begin_in(const queueing *g, segment *s, int64_t t)
 void queue_begin(run *r, int32_t index, int64_t t)
 {
     const queueing g = queueing_of(r, index);
-    const beginning *begun = begun_at(&g, t);
+    const attempt_start *start = start_at(&g, t);
     queue *q = g.q;
     segment *last = (q->now.count > 0) ? &q->now.at[q->now.count - 1] : NULL;
     queued *made = queue_slot(r->home->monitor, g.a, q, q->count, true);
@@ -242,7 +242,7 @@ void queue_begin(run *r, int32_t index, int64_t t)
     }
     if (r->home->moves != NULL) {
         count_begin(r, index, t);
-        count_edge(&g, g.a->initial, begun->location, 1, t);
+        count_edge(&g, g.a->initial, start->location, 1, t);
     }
     g.j->count++;
     made->triggered = t;
@@ -252,27 +252,27 @@ void queue_begin(run *r, int32_t index, int64_t t)
         leave_episode(r, index);
         g.j->current = IN_QUEUE;
     }
-    if (begun->location <= PASSED) {
+    if (start->location <= PASSED) {
         segment initial;
-        set_begun(&initial, g.a->initial, 0);
+        set_started(&initial, g.a->initial, 0);
         if (g.j->current == IN_QUEUE) {
-            decide_current(r, index, begun->location == FAILED, t);
+            decide_current(r, index, start->location == FAILED, t);
         }
-        report_queued(&g, q->count - 1, &initial, begun->location == PASSED, t);
+        report_queued(&g, q->count - 1, &initial, start->location == PASSED, t);
         q->count--;
         return;
     }
-    if ((last == NULL) || !begins_in(&g, begun, last, t)) {
+    if ((last == NULL) || !starts_in(&g, start, last, t)) {
         last = next_segment(r->home->monitor, &q->now);
         if (last == NULL) {
             q->count--; /* every item belongs to a segment */
             return;
         }
-        set_begun(last, begun->location, begun->sliding);
+        set_started(last, start->location, start->sliding);
     }
     begin_in(&g, last, t);
-    due = sum(t, begun->due);
-    if (!begun->rests) {
+    due = sum(t, start->due);
+    if (!start->rests) {
         set_restless(r, index);
         due = t + 1;
     }

@@ -138,8 +138,8 @@ static void make_own(const queueing *g, const segment *s, int32_t from, int32_t 
 }
 
 /* Whether the items [from, end), which are in state `s` at `t`, become part of the last segment of those
- * kept, whose items end at `behind`; its clocks are changed accordingly. */
-static bool join_last(const queueing *g, segment *last, int32_t behind, const segment *s, int32_t from,
+ * kept, whose items end at `next`; its clocks are changed accordingly. */
+static bool join_last(const queueing *g, segment *last, int32_t next, const segment *s, int32_t from,
                       int32_t end, int64_t t)
 {
     uint32_t own = 0;
@@ -148,7 +148,7 @@ static bool join_last(const queueing *g, segment *last, int32_t behind, const se
     for (c = 0; same && (c < g->a->widths[s->location]); c++) {
         if ((last->clocks[c] != s->clocks[c]) || (s->clocks[c] == OF_EACH_ATTEMPT)) {
             own |= (uint32_t)1 << c;
-            same = may_be_own(g, last, behind - 1, s, from, end, c, t);
+            same = may_be_own(g, last, next - 1, s, from, end, c, t);
         }
     }
     if (!same || ((own != 0U) && !make_own_instants(g->r->home->monitor, g->a, g->q))) {
@@ -156,7 +156,7 @@ static bool join_last(const queueing *g, segment *last, int32_t behind, const se
     }
     for (c = 0; c < g->a->widths[s->location]; c++) {
         if (((own >> c) & 1U) != 0U) {
-            make_own(g, last, behind - last->count, behind, c);
+            make_own(g, last, next - last->count, next, c);
             make_own(g, s, from, end, c);
             last->clocks[c] = OF_EACH_ATTEMPT;
         }

@@ -38,16 +38,16 @@ static int64_t count_flips_at(const window *w, int64_t value, int64_t enough, bo
     const stretch *first;
     int64_t leaves_at;
     int64_t grown;
-    bool goes;
+    bool expires;
     if ((s->count == 0) || (holds == comes)) {
         return NEVER; /* it grows at least as fast as it shrinks, or does neither */
     }
     first = stretch_of(s, 0);
     leaves_at = gone_from(first->begin, w->n->high);
-    goes = is_counted(w, 0, better);
+    expires = is_counted(w, 0, better);
     if (holds) {
         const int64_t spare = value - enough;
-        const bool within = goes && ((first->end - first->begin) / w->unit >= spare);
+        const bool within = expires && ((first->end - first->begin) / w->unit >= spare);
         return within ? gone_from(first->begin + spare * w->unit, w->n->high)
                       : (alone ? NEVER : gone_from(first->end, w->n->high));
     }
@@ -58,7 +58,7 @@ static int64_t count_flips_at(const window *w, int64_t value, int64_t enough, bo
     if (alone) {
         return NEVER; /* as much comes as goes */
     }
-    return goes ? gone_from(first->end, w->n->high) : least(grown, gone_from(first->end, w->n->high));
+    return expires ? gone_from(first->end, w->n->high) : least(grown, gone_from(first->end, w->n->high));
 }
 
 /* A counter, which a forged snapshot may have made negative or huge. */
@@ -97,13 +97,13 @@ static uint8_t folded_distinct(const window *w, int64_t enough, int64_t *due)
 
 /* ---- SUM, INTEGRAL, MEAN, VARIANCE: exact sums */
 
-/* sum + steps * (comes - goes) >= (asked + steps * more) * limit, or > if strict. */
+/* sum + steps * (comes - expires) >= (asked + steps * more) * limit, or > if strict. */
 typedef struct {
     rv_number limit;
-    int64_t asked;             /* factor of the limit: 1; for MEAN, the members; for INTEGRAL, 10^9 */
-    int64_t more;              /* change of `asked` per step */
+    int64_t factor;            /* factor of the limit: 1; for MEAN, the members; for INTEGRAL, 10^9 */
+    int64_t more;              /* change of `factor` per step */
     rv_number comes;           /* what is added at each step; unknown: nothing */
-    rv_number goes;            /* what expires at each step; unknown: nothing */
+    rv_number expires;         /* what expires at each step; unknown: nothing */
     bool strict;
 } comparison;
 
@@ -120,10 +120,10 @@ static exact_rest rest_after(const uint32_t *sum, const comparison *a, int64_t s
     if (a->comes.kind != RV_UNKNOWN) {
         exact_add(found.limb, &a->comes, steps, false);
     }
-    if (a->goes.kind != RV_UNKNOWN) {
-        exact_add(found.limb, &a->goes, steps, true);
+    if (a->expires.kind != RV_UNKNOWN) {
+        exact_add(found.limb, &a->expires, steps, true);
     }
-    exact_add(found.limb, &a->limit, a->asked + a->more * steps, true);
+    exact_add(found.limb, &a->limit, a->factor + a->more * steps, true);
     return found;
 }
 
@@ -200,7 +200,7 @@ static int64_t sum_flips_at(const window *w, const uint32_t *sum, comparison *a,
     }
     a->more = mean ? ((s->growing ? 1 : 0) - (leaving ? 1 : 0)) : 0;
     if (leaving) {
-        a->goes = member_number(w, 0, better);
+        a->expires = member_number(w, 0, better);
         steps = (first->end - first->begin) / w->unit + 1;
     } else {
         steps = (leaves_at == NEVER) ? LIMIT / w->unit / 2 : (leaves_at - 1 - w->t) / w->unit;
@@ -221,7 +221,7 @@ static uint8_t folded_sum(const window *w, const rv_number *limit, int64_t *due)
         const uint32_t *sum = w->x->limb + i * SUM_LIMBS;
         comparison a = {*limit, 1, 0, UNKNOWN_NUMBER, UNKNOWN_NUMBER, (w->n->b & WINDOW_STRICT) != 0};
         bool holds;
-        a.asked = w->of_ticks ? INT64_C(1000000000) /* the limit is in seconds, the sum in ticks */
+        a.factor = w->of_ticks ? INT64_C(1000000000) /* the limit is in seconds, the sum in ticks */
                               : ((w->fold == FOLD_MEAN) ? counted(w->s->total) : 1);
         holds = is_enough_after(sum, &a, 0);
         *due = least(*due, sum_flips_at(w, sum, &a, i > 0, holds));

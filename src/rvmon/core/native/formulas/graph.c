@@ -57,10 +57,10 @@ static uint8_t combined(const run *r, const node_plan *n)
 }
 
 /* ELAPSED: `low` ticks since the first position. After an outage at the start, the first position lies
- * between `origin`, the first one that may exist, and `begun`, the first one that certainly does. */
+ * between `origin`, the first one that may exist, and `sure_from`, the first one that certainly does. */
 static uint8_t elapsed(run *r, const node_plan *n, int64_t t)
 {
-    const int64_t due = sum(r->at.begun, n->low);
+    const int64_t due = sum(r->at.sure_from, n->low);
     const int64_t may_be_due = sum(r->at.origin, n->low);
     timers_set(&r->wake, n->timer, (t < may_be_due) ? may_be_due : ((t < due) ? due : NEVER));
     return (t >= due) ? IS_TRUE : ((t >= may_be_due) ? IS_UNKNOWN : IS_FALSE);
@@ -72,16 +72,16 @@ static uint8_t passed(run *r, const node_plan *n, int64_t t, uint8_t known)
 {
     const rv_number after = program_value(r, r->part->atoms[n->a].left, NULL);
     const rv_number since = program_value(r, (int32_t)n->low, NULL);
-    int64_t asked;
+    int64_t delay;
     int64_t due;
     int64_t may_be_due;
     if ((known != IS_TRUE) || (after.kind == RV_UNKNOWN) || (since.kind != RV_WHOLE)) {
         timers_set(&r->wake, n->timer, NEVER);
         return IS_UNKNOWN;
     }
-    asked = since.as.whole + seconds_in_ticks(&after) + n->b;
-    due = (asked >= LIMIT) ? NEVER : r->at.begun + asked;
-    may_be_due = (asked >= LIMIT) ? NEVER : r->at.origin + asked;
+    delay = since.as.whole + seconds_in_ticks(&after) + n->b;
+    due = (delay >= LIMIT) ? NEVER : r->at.sure_from + delay;
+    may_be_due = (delay >= LIMIT) ? NEVER : r->at.origin + delay;
     timers_set(&r->wake, n->timer, (t < may_be_due) ? may_be_due : ((t < due) ? due : NEVER));
     return (t >= due) ? IS_TRUE : ((t >= may_be_due) ? IS_UNKNOWN : IS_FALSE);
 }

@@ -276,9 +276,9 @@ void expire_members(window *w)
         const stretch *first = stretch_of(s, 0);
         const int64_t held = (first->end - first->begin) / w->unit + 1;
         const int64_t gone = least((from - first->begin + w->unit - 1) / w->unit, held);
-        const bool goes_on = s->growing && (s->count == 1);
+        const bool continues = s->growing && (s->count == 1);
         remove_from_oldest(w, gone);
-        if ((gone < held) || goes_on) {
+        if ((gone < held) || continues) {
             return;
         }
     }

@@ -126,7 +126,7 @@ void restart_window(run *r, const node_plan *n)
 static bool has_not_begun(const run *r, const node_plan *n, int64_t t)
 {
     return (n->since >= 0) && (r->captured[n->since].kind == RV_WHOLE)
-           && (t - r->at.begun < r->captured[n->since].as.whole);
+           && (t - r->at.sure_from < r->captured[n->since].as.whole);
 }
 
 /* Publish the fold as the number that CODE_WINDOW reads; if it changed, comparisons with it are marked.

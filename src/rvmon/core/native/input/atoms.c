@@ -17,11 +17,11 @@ static const uint8_t HOLDS_FOR[CMPS] = {
 /* A comparison without a branch on the order, which would be unpredictable for noisy values. */
 static uint8_t compare_real(int32_t how, const rv_number *value, double constant)
 {
-    const int32_t stands = order_of(value->as.real, constant);
+    const int32_t order = order_of(value->as.real, constant);
     if (value->kind != RV_REAL) {
         return IS_UNKNOWN;
     }
-    return (uint8_t)(IS_TRUE * ((HOLDS_FOR[how] >> stands) & 1));
+    return (uint8_t)(IS_TRUE * ((HOLDS_FOR[how] >> order) & 1));
 }
 
 /* Up to this many comparisons, doing them all is faster than testing a span; beyond, the span pays. */

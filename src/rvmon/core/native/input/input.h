@@ -35,7 +35,7 @@ void be_born(run *r, int32_t local);
 void set_stale(run *r, int32_t local, int64_t t);
 void keep_payload(run *r, int32_t local, bool known, const rv_number *fields);
 /* The value in an update of a signal; if unknown, `as.whole` says why (RV_IS_NONE, RV_IS_NAN). */
-rv_number number_said(const rv_update *u);
+rv_number number_given(const rv_update *u);
 void apply_update(run *r, int64_t t, const incoming *in);
 
 /* ---- spans.c */

@@ -319,8 +319,8 @@ static rv_number field_value(const run *r, int32_t event, int32_t field, const i
 /* Ticks since the first position; unknown if it is not certain which is the first, or if this is one. */
 static rv_number time_now(const run *r)
 {
-    const bool known = (r->at.begun == r->at.origin) && !r->at.dense && (r->at.presence == ARE_THERE);
-    return known ? whole(r->at.position - r->at.begun) : UNKNOWN_NUMBER;
+    const bool known = (r->at.sure_from == r->at.origin) && !r->at.dense && (r->at.presence == ARE_THERE);
+    return known ? whole(r->at.position - r->at.sure_from) : UNKNOWN_NUMBER;
 }
 
 /* Seconds in ticks, rounded to nearest, ties to even; clamped to +-LIMIT. */

@@ -206,7 +206,7 @@ void begin_blank(run *r, int64_t t)
     int32_t i;
     r->at.started = true;
     r->at.origin = t;
-    r->at.begun = NEVER;
+    r->at.sure_from = NEVER;
     r->at.position = t;
     r->at.awaited = NEVER;
     r->opening = false;
@@ -238,9 +238,9 @@ void begin_blank(run *r, int64_t t)
 void end_blank(run *r, int64_t t)
 {
     r->at.starting = IS_FALSE;
-    if (r->at.begun == NEVER) {
+    if (r->at.sure_from == NEVER) {
         r->at.starting = IS_UNKNOWN;
-        r->at.begun = t;
+        r->at.sure_from = t;
     }
     recheck_all(r);
 }

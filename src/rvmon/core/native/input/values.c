@@ -208,7 +208,7 @@ static void take_event(run *r, int32_t local, int32_t says, const rv_number *fie
     (void)recheck_list(r, e->on_occurrence[r->at.phase]);
 }
 
-rv_number number_said(const rv_update *u)
+rv_number number_given(const rv_update *u)
 {
     const bool given = u->value.kind != RV_UNKNOWN;
     rv_number unknown = UNKNOWN_NUMBER;
@@ -224,8 +224,8 @@ void apply_update(run *r, int64_t t, const incoming *in)
         return;
     }
     if (!in->event) {
-        const rv_number said = number_said(u);
-        take_signal(r, t, in->local, &said);
+        const rv_number number = number_given(u);
+        take_signal(r, t, in->local, &number);
     } else if ((r->part->events[in->local].flags & EVENT_KEY) != 0) {
         const int32_t says = says_for_instance(r, u);
         if (says >= 0) {

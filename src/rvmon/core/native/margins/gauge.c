@@ -44,7 +44,7 @@ void gauge_begin(const margin_shape *s, gauge *g, int64_t first)
         o->next = first;
         o->positions = 0;
         o->carried = (s->nodes[i].turned != 0) ? INFINITE : -INFINITE;
-        o->begun = false;
+        o->started = false;
     }
     for (i = 0; i < s->edges; i++) {
         g->edges[i].read = 0;
@@ -54,7 +54,7 @@ void gauge_begin(const margin_shape *s, gauge *g, int64_t first)
     g->first = first;
     g->read = 0;
     g->reported = -INFINITE;
-    g->begun = false;
+    g->started = false;
     g->after_gap = false;
 }
 
@@ -97,7 +97,7 @@ bool gauge_copy(rv_monitor *m, const margin_shape *s, gauge *made, const gauge *
         to->next = from->next;
         to->positions = from->positions;
         to->carried = from->carried;
-        to->begun = from->begun;
+        to->started = from->started;
     }
     if (done) {
         (void)memcpy(made->edges, g->edges, (size_t)s->edges * sizeof *g->edges);
@@ -105,7 +105,7 @@ bool gauge_copy(rv_monitor *m, const margin_shape *s, gauge *made, const gauge *
         made->first = g->first;
         made->read = g->read;
         made->reported = g->reported;
-        made->begun = g->begun;
+        made->started = g->started;
         made->after_gap = g->after_gap;
     }
     return done;
@@ -121,7 +121,7 @@ static inline void take_leaf(gauging *w, int32_t place, const int64_t *times, in
         add_steps(s, times, count, values);
     }
     for (k = 0; !w->aligned && (k < count); k++) {
-        if (w->sparse || (values[k] != *last) || (!w->g->begun && (k == 0))) {
+        if (w->sparse || (values[k] != *last) || (!w->g->started && (k == 0))) {
             emit_step(w, place, times[k], values[k]);
         }
         *last = values[k];
@@ -142,7 +142,7 @@ void gauge_take(gauging *w, const int64_t *times, int64_t count, const double *v
             take_leaf(w, s->leaves[i], times, count, &values[(int64_t)i * apart], &w->g->letter[i]);
         }
     }
-    w->g->begun = true;
+    w->g->started = true;
 }
 
 /* Evaluate all operators, operands first, as far as the leaves are known. */

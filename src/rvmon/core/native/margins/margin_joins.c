@@ -21,8 +21,8 @@ static margin_range bounds_of(const operator_plan *n, const margin_edge *edges)
 static inline void emit_change(gauging *w, int32_t place, int64_t at, double value)
 {
     margin_node *o = &w->g->nodes[place];
-    if (w->sparse || !o->begun || (value != o->carried)) {
-        o->begun = true;
+    if (w->sparse || !o->started || (value != o->carried)) {
+        o->started = true;
         o->carried = value;
         emit_step(w, place, at, value);
     }
@@ -166,7 +166,7 @@ static void emit_stretch(gauging *w, int32_t place, int64_t first, int64_t last,
 static void end_until(gauging *w, int32_t place)
 {
     margin_parts *s = &w->g->nodes[place].parts;
-    double value = margin_behind(w->end, node_plan_of(w, place)->kept != 0);
+    double value = margin_beyond(w->end, node_plan_of(w, place)->kept != 0);
     int32_t i;
     for (i = s->end - 1; i >= s->begin; i--) {
         value = within(value, s->at[i].least, s->at[i].most);

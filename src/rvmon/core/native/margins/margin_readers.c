@@ -155,8 +155,8 @@ bool margins_make(run *r)
         const size_t size = (size_t)(s->plan->measures.count + 1) * sizeof(double);
         for (k = 0; k < 2; k++) {
             q->letter[k] = arena_take(&m->memory, size);
-            q->behind[k] = arena_take(&m->memory, size);
-            if ((q->letter[k] == NULL) || (q->behind[k] == NULL)) {
+            q->after[k] = arena_take(&m->memory, size);
+            if ((q->letter[k] == NULL) || (q->after[k] == NULL)) {
                 return false;
             }
         }
@@ -176,7 +176,7 @@ bool margins_make(run *r)
 void margins_clear(run *r)
 {
     int32_t i;
-    r->asked = 0;
+    r->pending_margins = 0;
     r->changed_count = 0;
     r->measured_at = -LIMIT;
     if (r->margins != NULL) {
@@ -184,7 +184,7 @@ void margins_clear(run *r)
     }
     for (i = 0; (r->margins != NULL) && (i < r->part->plan->judges.count); i++) {
         measuring *q = &r->margins[i];
-        q->asks.first = q->asks.end = 0;
+        q->requests.first = q->requests.end = 0;
         q->reported = 0;
         q->readings[0].stamps.end = 0;
         q->passes = false;
@@ -200,12 +200,12 @@ void margins_clear(run *r)
 void ask_for(run *r, int32_t index, int64_t position, int32_t record)
 {
     measuring *q = &r->margins[index];
-    const bool first = q->asks.end == q->asks.first;
-    if (!room_for_steps(&q->work, &q->asks, 1, q->asks.first)) {
+    const bool first = q->requests.end == q->requests.first;
+    if (!room_for_steps(&q->work, &q->requests, 1, q->requests.first)) {
         return;
     }
-    add_step(&q->asks, position, record);
-    r->asked++;
+    add_step(&q->requests, position, record);
+    r->pending_margins++;
     if (first && !awaits_the_end(r, index) && !is_streamed(r, index)) {
         const int64_t due = sum(position * step_of(r), shape_of(r, index)->lag);
         timers_set(&r->margins_due, index, least(due, r->margins_due.due[index]));

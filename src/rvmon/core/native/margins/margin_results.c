@@ -195,14 +195,14 @@ static bool try_end(run *r, int32_t index, const margin_end *end, int64_t reache
     measuring *q = &r->margins[index];
     gauging w = *begin_gauging(r, index, end->last, reached);
     const int32_t side = ((end->rest == REST_GREATEST) && q->parted) ? 1 : 0;
-    const int64_t behind = floored(q->position, step_of(r)) + 1;
+    const int64_t beyond = floored(q->position, step_of(r)) + 1;
     if (!gauge_copy(w.monitor, w.shape, &q->scratch, &q->readings[side])) {
         return false;
     }
     w.g = &q->scratch;
     w.side = side;
-    if (q->passes && (behind <= floored(end->instant, w.step))) {
-        gauge_take(&w, &behind, 1, q->behind[side], 1);
+    if (q->passes && (beyond <= floored(end->instant, w.step))) {
+        gauge_take(&w, &beyond, 1, q->after[side], 1);
     }
     gauge_run(&w);
     w.end = end;
@@ -219,13 +219,13 @@ static bool each_at_end(run *r, int32_t index, int64_t instant, int64_t reached,
     rv_monitor *m = r->home->monitor;
     measuring *q = &r->margins[index];
     const bool streamed = is_streamed(r, index);
-    const margin_cursor begin = {q->asks.first, q->reported};
-    const int64_t count = q->asks.end - q->asks.first
+    const margin_cursor begin = {q->requests.first, q->reported};
+    const int64_t count = q->requests.end - q->requests.first
                           + (streamed ? q->readings[0].stamps.end - q->reported : 0);
     const int32_t root = shape_of(r, index)->count - 1;
     const size_t size = (size_t)(3 * count + 1) * sizeof(double);
     margin_end end = {instant, LIMIT, REST_LEAST};
-    margin_ask one = {0, 0};
+    margin_request one = {0, 0};
     rv_margin figure;
     margin_cursor next;
     double *found;
@@ -245,12 +245,12 @@ static bool each_at_end(run *r, int32_t index, int64_t instant, int64_t reached,
             return true;
         }
         next = begin;
-        for (i = end.rest * count; next_asked(q, streamed, &next, &one); i++) {
+        for (i = end.rest * count; next_request(q, streamed, &next, &one); i++) {
             found[i] = gauge_value(&q->scratch, root, one.position);
         }
     }
     next = begin;
-    for (i = 0; more && (found != NULL) && next_asked(q, streamed, &next, &one); i++) {
+    for (i = 0; more && (found != NULL) && next_request(q, streamed, &next, &one); i++) {
         const margin_range bounds = {found[i], found[count + i]};
         fill_figure(&figure, r, index, &one, bounds, found[2 * count + i]);
         more = take(user, &figure, one.record);

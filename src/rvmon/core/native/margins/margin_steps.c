@@ -65,20 +65,20 @@ static bool is_last_unread(const gauging *w, int32_t place)
 }
 
 /* Whether any position from `left` to `right` is asked. */
-bool is_asked(const gauging *w, int64_t left, int64_t right)
+bool is_requested(const gauging *w, int64_t left, int64_t right)
 {
     const measuring *q = w->q;
-    int64_t low = q->asks.first;
-    int64_t high = q->asks.end;
+    int64_t low = q->requests.first;
+    int64_t high = q->requests.end;
     while (low < high) {
         const int64_t middle = low + (high - low) / 2;
-        if (step_at(&q->asks, middle)->at < left) {
+        if (step_at(&q->requests, middle)->at < left) {
             low = middle + 1;
         } else {
             high = middle;
         }
     }
-    return (low < q->asks.end) && (step_at(&q->asks, low)->at <= right);
+    return (low < q->requests.end) && (step_at(&q->requests, low)->at <= right);
 }
 
 /* Whether a step has to be added to a node, and there is room for it. If only the values at asked
@@ -87,7 +87,7 @@ bool takes_step(gauging *w, int32_t place, int64_t at, double value)
 {
     margin_steps *s = &w->g->nodes[place].out;
     if (is_thin(w, place) && (place < w->shape->count - 1) && (s->end > s->first)
-        && is_last_unread(w, place) && !is_asked(w, step_at(s, s->end - 1)->at, at - 1)) {
+        && is_last_unread(w, place) && !is_requested(w, step_at(s, s->end - 1)->at, at - 1)) {
         step_at(s, s->end - 1)->value = value;
         return false;
     }
@@ -143,10 +143,10 @@ bool steps_copy(rv_monitor *m, margin_steps *made, const margin_steps *s)
 
 /* ---- stretches of an `until`, U(i) = max(meets(i), min(stays(i), U(i + 1))), or a dual */
 
-static void join_bounds(margin_part *made, const margin_part *before, const margin_part *behind)
+static void join_bounds(margin_part *made, const margin_part *before, const margin_part *after)
 {
-    made->low = within(behind->low, before->least, before->most);
-    made->high = within(behind->high, before->least, before->most);
+    made->low = within(after->low, before->least, before->most);
+    made->high = within(after->high, before->least, before->most);
 }
 
 /* Compute the clamps of several stretches together: before `middle` from each to the middle, after it
@@ -266,7 +266,7 @@ void parts_follow(gauging *w, margin_parts *s, int64_t start, double low, double
         const margin_part last = s->at[s->end - 1];
         const bool leads_on = (within(low, last.least, last.most) == low)
                               && (within(high, last.least, last.most) == high);
-        if (!leads_on && (!alone || is_asked(w, last.first, first - 1))) {
+        if (!leads_on && (!alone || is_requested(w, last.first, first - 1))) {
             break;
         }
         parts_pop(s);

@@ -46,8 +46,8 @@ static void emit_windows(const windowing *x, int64_t stop)
             best = step_at(wedge, wedge->first)->value;
             right = least(exit_of(wedge), stop);
         }
-        if (!o->begun || (best != o->carried)) {
-            o->begun = true;
+        if (!o->started || (best != o->carried)) {
+            o->started = true;
             o->carried = best;
             emit_step(x->w, x->place, at, best);
         }
@@ -154,7 +154,7 @@ static inline void slide_window(windowing *x, int64_t until)
 /* Windows that extend beyond the end of the trace have the value assumed for the rest. */
 static void give_up(windowing *x)
 {
-    x->nothing = margin_behind(x->w->end, false);
+    x->nothing = margin_beyond(x->w->end, false);
     x->o->wedge.first = x->o->wedge.end;
     x->closes = false;
     x->edge->read = x->from->end;
@@ -164,7 +164,7 @@ static void give_up(windowing *x)
 static void end_windows(windowing *x, int64_t limit, bool ahead)
 {
     slide_window(x, least(limit, x->w->end->last));
-    if (ahead && (margin_behind(x->w->end, false) != x->nothing)) {
+    if (ahead && (margin_beyond(x->w->end, false) != x->nothing)) {
         give_up(x);
     }
     slide_window(x, x->w->end->last);
@@ -232,13 +232,13 @@ static void add_ends(const gauging *w, shifting *x, const operator_plan *n)
     if (w->sparse) {
         if (by_rule) {
             x->ends[0].at = opened;
-            x->ends[0].value = margin_behind(w->end, kept);
+            x->ends[0].value = margin_beyond(w->end, kept);
         }
         x->ends[by_rule ? 1 : 0].at = LIMIT;
-        x->ends[by_rule ? 1 : 0].value = by_rule ? -INFINITE : margin_behind(w->end, false);
+        x->ends[by_rule ? 1 : 0].value = by_rule ? -INFINITE : margin_beyond(w->end, false);
     } else {
         x->ends[0].at = w->end->last - x->offset + 1;
-        x->ends[0].value = margin_behind(w->end, kept);
+        x->ends[0].value = margin_beyond(w->end, kept);
         x->ends[1].at = opened + 1;
         x->ends[1].value = -INFINITE;
     }
@@ -251,11 +251,11 @@ static void move_all(gauging *w, int32_t place, shifting *x, int64_t until, doub
     margin_node *o = &w->g->nodes[place];
     const int64_t first = w->g->first;
     margin_step one = {first, before};
-    bool some = !o->begun && (x->offset < 0);
+    bool some = !o->started && (x->offset < 0);
     if (until < first) {
         return;
     }
-    o->begun = true;
+    o->started = true;
     if (!some && next_moved(x, &one) && (one.at <= until)) {
         take_moved(x);
         some = true;
@@ -286,8 +286,8 @@ static void move_samples(gauging *w, int32_t place, shifting *x, int64_t known, 
     const bool ahead = x->offset > 0;
     int64_t until = known;
     margin_step one = {0, 0.0};
-    if (!o->begun) {
-        o->begun = true;
+    if (!o->started) {
+        o->started = true;
         o->carried = before;
     }
     if (ahead && (x->ends_count > 0)) {

@@ -49,19 +49,19 @@ void give_letters(gauging *w, const int64_t *times, int64_t count, double *const
 }
 
 /* Give the leaves once the events of the last position are over, unless a later position was read. */
-void give_behind(gauging *w, int64_t last)
+void give_after(gauging *w, int64_t last)
 {
     measuring *q = w->q;
     const int64_t position = floored(q->position, w->step) + 1;
     if (q->passes && (position <= last)) {
         q->passes = false;
-        give_letters(w, &position, 1, q->behind, 1);
+        give_letters(w, &position, 1, q->after, 1);
     }
 }
 
 /* Fill in a figure: lower and upper bound, and lower bound by the rule for the end. Where captured values
  * are unknown it may be anything. */
-void fill_figure(rv_margin *made, const run *r, int32_t index, const margin_ask *one, margin_range found,
+void fill_figure(rv_margin *made, const run *r, int32_t index, const margin_request *one, margin_range found,
                  double kept)
 {
     const bool cut = r->cut < NEVER;
@@ -76,7 +76,7 @@ void fill_figure(rv_margin *made, const run *r, int32_t index, const margin_ask 
 }
 
 /* Report a final figure. */
-static inline void report_figure(const run *r, int32_t index, const margin_ask *one, margin_range found)
+static inline void report_figure(const run *r, int32_t index, const margin_request *one, margin_range found)
 {
     rv_margin *made = figure_found(r->home->monitor, one->record);
     if (made != NULL) {
@@ -94,24 +94,24 @@ static void report_known(run *r, int32_t index)
     gauge *most = q->parted ? &q->readings[1] : NULL;
     const int64_t known = q->parted ? least(least_one->nodes[root].known, most->nodes[root].known)
                                     : least_one->nodes[root].known;
-    margin_cursor next = {q->asks.first, q->reported};
+    margin_cursor next = {q->requests.first, q->reported};
     margin_cursor done = next;
-    margin_ask one = {0, 0};
-    while (next_asked(q, streamed, &next, &one) && (one.position <= known)) {
+    margin_request one = {0, 0};
+    while (next_request(q, streamed, &next, &one) && (one.position <= known)) {
         margin_range found;
         found.low = gauge_value(least_one, root, one.position);
         found.high = (most == NULL) ? found.low : gauge_value(most, root, one.position);
         report_figure(r, index, &one, found);
         done = next;
     }
-    r->asked -= (int32_t)(done.ask - q->asks.first);
-    q->asks.first = done.ask;
+    r->pending_margins -= (int32_t)(done.request - q->requests.first);
+    q->requests.first = done.request;
     q->reported = done.position;
     (void)gauge_value(least_one, root, known); /* values before are not needed */
     if (most != NULL) {
         (void)gauge_value(most, root, known);
     }
-    if ((q->asks.first == q->asks.end) && !is_kept_up(r, index) && !awaits_the_end(r, index)) {
+    if ((q->requests.first == q->requests.end) && !is_kept_up(r, index) && !awaits_the_end(r, index)) {
         q->active = false;
         q->passes = false;
     }
@@ -124,8 +124,8 @@ static void set_margin_due(run *r, int32_t index, int64_t now, int64_t reached)
     const margin_shape *s = shape_of(r, index);
     const measuring *q = &r->margins[index];
     int64_t due = NEVER;
-    if (q->active && (q->asks.first < q->asks.end) && !awaits_the_end(r, index)) {
-        due = sum(step_at(&q->asks, q->asks.first)->at * step_of(r), s->lag);
+    if (q->active && (q->requests.first < q->requests.end) && !awaits_the_end(r, index)) {
+        due = sum(step_at(&q->requests, q->requests.first)->at * step_of(r), s->lag);
         if (due <= reached) {
             const bool all = !s->passes && !q->passes && (now >= floored(reached, step_of(r)));
             due = all ? NEVER : reached + 1; /* NEVER: nothing is left to evaluate */
@@ -139,7 +139,7 @@ static void come_to_margin(run *r, int32_t index, int64_t now, int64_t reached)
 {
     measuring *q = &r->margins[index];
     gauging *w = begin_gauging(r, index, now, reached);
-    give_behind(w, now);
+    give_after(w, now);
     w->g = &q->readings[0];
     gauge_run(w);
     if (q->parted) {
@@ -189,8 +189,8 @@ static void read_measures(run *r, int32_t index, int64_t position)
     for (i = 0; s->occurs && (i < s->plan->measures.count); i++) {
         margin_range found = {q->letter[0][i], q->letter[1][i]};
         q->passes = passes_on(r, &s->measures[i], &found) || q->passes;
-        q->behind[0][i] = found.low;
-        q->behind[1][i] = found.high;
+        q->after[0][i] = found.low;
+        q->after[1][i] = found.high;
     }
     if (differs && !q->parted) {
         part_margins(r, index);
@@ -204,8 +204,8 @@ void enter_position(run *r, int32_t index, int64_t t)
     const margin_shape *s = shape_of(r, index);
     measuring *q = &r->margins[index];
     const int64_t position = floored(t, step_of(r));
-    const bool asked = q->asks.first < q->asks.end;
-    if (q->active && !asked && !is_kept_up(r, index)) {
+    const bool pending_margins = q->requests.first < q->requests.end;
+    if (q->active && !pending_margins && !is_kept_up(r, index)) {
         q->active = false; /* it was active only for the end of the trace */
     }
     if (!q->active) {
@@ -221,7 +221,7 @@ void enter_position(run *r, int32_t index, int64_t t)
     } else if (awaits_the_end(r, index)) {
         come_to_margin(r, index, position - 1, t);
     } else if (q->passes) {
-        give_behind(begin_gauging(r, index, position - 1, t), position - 1);
+        give_after(begin_gauging(r, index, position - 1, t), position - 1);
     } else {
         /* The leaves are unchanged. */
     }
@@ -242,7 +242,7 @@ void margins_begin(run *r, int32_t index, int64_t t, int32_t record)
     }
     q = &r->margins[index];
     if ((r->at.presence != ARE_THERE) || r->at.dense) {
-        const margin_ask none = {position, record};
+        const margin_request none = {position, record};
         const margin_range anything = {-INFINITE, INFINITE};
         report_figure(r, index, &none, anything);
         return;
@@ -329,9 +329,9 @@ void margins_settle(home *h, int64_t reached)
         return;
     }
     for (r = h->root; r != NULL; r = following(h, r)) {
-        const int32_t asked = r->asked;
+        const int32_t pending_margins = r->pending_margins;
         settle_run(r, reached);
-        if ((asked > 0) && (r->asked == 0) && (h->part->plan->captured > 0)) {
+        if ((pending_margins > 0) && (r->pending_margins == 0) && (h->part->plan->captured > 0)) {
             touch_run(r); /* it may be freed */
             over = true;
         }
@@ -348,8 +348,8 @@ void margins_miss(run *r, int64_t t)
     for (i = 0; (r->margins != NULL) && (i < r->part->plan->judges.count); i++) {
         measuring *q = &r->margins[i];
         margins_cut(r, i, t);
-        r->asked -= (int32_t)(q->asks.end - q->asks.first);
-        q->asks.first = q->asks.end;
+        r->pending_margins -= (int32_t)(q->requests.end - q->requests.first);
+        q->requests.first = q->requests.end;
         q->reported = q->readings[0].stamps.end;
         q->missed = true;
         q->active = false;

@@ -49,7 +49,7 @@ static inline double within(double value, double least_one, double most)
 }
 
 /* The value assumed after the end; `kept`: for an unbounded `R`. */
-static inline double margin_behind(const margin_end *end, bool kept)
+static inline double margin_beyond(const margin_end *end, bool kept)
 {
     const bool good = (end->rest == REST_GREATEST) || ((end->rest == REST_END) && kept);
     return good ? INFINITE : -INFINITE;
@@ -79,26 +79,26 @@ static inline const margin_shape *shape_of(const run *r, int32_t index)
 
 /* A place in the asked positions: those of attempts, and all samples where each is asked. */
 typedef struct {
-    int64_t ask;
+    int64_t request;
     int64_t position;
 } margin_cursor;
 
 /* The next asked position, in order; false: there is none. */
-static inline bool next_asked(const measuring *q, bool streamed, margin_cursor *at, margin_ask *found)
+static inline bool next_request(const measuring *q, bool streamed, margin_cursor *at, margin_request *found)
 {
     const margin_steps *stamps = &q->readings[0].stamps;
-    const bool begins = at->ask < q->asks.end;
+    const bool begins = at->request < q->requests.end;
     if (streamed && (at->position < stamps->end)
-        && (!begins || (step_at(stamps, at->position)->at < step_at(&q->asks, at->ask)->at))) {
+        && (!begins || (step_at(stamps, at->position)->at < step_at(&q->requests, at->request)->at))) {
         found->position = step_at(stamps, at->position)->at;
         found->record = 0;
         at->position++;
         return true;
     }
     if (begins) {
-        found->position = step_at(&q->asks, at->ask)->at;
-        found->record = (int32_t)step_at(&q->asks, at->ask)->value;
-        at->ask++;
+        found->position = step_at(&q->requests, at->request)->at;
+        found->record = (int32_t)step_at(&q->requests, at->request)->value;
+        at->request++;
     }
     return begins;
 }
@@ -114,7 +114,7 @@ static inline double measured_real(const margin_real *x, double value)
 bool room_for_steps(gauging *w, margin_steps *s, int64_t count, int64_t oldest);
 int64_t oldest_unread(const gauging *w, int32_t place);
 bool takes_step(gauging *w, int32_t place, int64_t at, double value);
-bool is_asked(const gauging *w, int64_t left, int64_t right);
+bool is_requested(const gauging *w, int64_t left, int64_t right);
 void note_positions(gauging *w, const int64_t *times, int64_t count);
 bool steps_copy(rv_monitor *m, margin_steps *made, const margin_steps *s);
 bool parts_copy(rv_monitor *m, margin_parts *made, const margin_parts *s);
@@ -223,11 +223,11 @@ static inline gauging *begin_gauging(const run *r, int32_t index, int64_t now, i
 
 /* ---- margins.c, of a run */
 void give_letters(gauging *w, const int64_t *times, int64_t count, double *const *values, int32_t apart);
-void give_behind(gauging *w, int64_t last);
+void give_after(gauging *w, int64_t last);
 void part_margins(run *r, int32_t index);
 void enter_position(run *r, int32_t index, int64_t t);
 void ask_for_positions(run *r, int32_t index, const int64_t *positions, int64_t count);
-void fill_figure(rv_margin *made, const run *r, int32_t index, const margin_ask *one, margin_range found,
+void fill_figure(rv_margin *made, const run *r, int32_t index, const margin_request *one, margin_range found,
                  double kept);
 
 /* ---- margin_results.c */

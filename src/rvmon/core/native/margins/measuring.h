@@ -53,7 +53,7 @@ typedef struct {
     int64_t next;              /* of a window, the first position without a value */
     int64_t positions;         /* the number of the first sample without a value */
     double carried;            /* its last value */
-    bool begun;
+    bool started;
 } margin_node;
 
 /* The lower or the upper bound of the robustness of a formula, evaluated incrementally. */
@@ -65,7 +65,7 @@ typedef struct {
     int64_t first;             /* the first position */
     int64_t read;              /* the number of the first unread step of the formula */
     double reported;           /* the value of the last step read */
-    bool begun;
+    bool started;
     bool after_gap;            /* whether input before the first position may have been anything */
 } gauge;
 
@@ -130,7 +130,7 @@ typedef struct gauging {
 typedef struct {
     int64_t position;
     int32_t record;            /* of the attempt that begins there, from 1; 0: of none */
-} margin_ask;
+} margin_request;
 
 /* The robustness of the attempts of a judge. */
 typedef struct measuring {
@@ -138,11 +138,11 @@ typedef struct measuring {
     gauge readings[2];         /* lower bound; upper bound, from the first unknown letter on */
     gauge scratch;             /* a copy on which the end of the trace is tried */
     double *letter[2];         /* scratch: lower and upper bounds of the leaves */
-    double *behind[2];         /* the same once the events of the position are over */
-    margin_steps asks;         /* positions of attempts without a figure; the value is the record */
+    double *after[2];          /* the same once the events of the position are over */
+    margin_steps requests;     /* positions of attempts without a figure; the value is the record */
     int64_t reported;          /* where all positions are asked: the number of reported ones */
     int64_t position;          /* the instant of the last letter that was read, ticks */
-    bool passes;               /* whether `behind` is still to be passed on for the next position */
+    bool passes;               /* whether `after` is still to be passed on for the next position */
     bool active;
     bool parted;
     bool missed;               /* whether earlier positions were missed in an outage */

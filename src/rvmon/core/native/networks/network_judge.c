@@ -235,14 +235,14 @@ static void adopt_next_letter(judging *g)
 static void come_to(judging *g, int64_t t)
 {
     network *w = &g->net->readings[0];
-    const bool fresh = !g->net->begun || ((g->j->first < 0) && (g->f.form->looks_back == 0));
+    const bool fresh = !g->net->started || ((g->j->first < 0) && (g->f.form->looks_back == 0));
     bool parted = false;
     const bool changed = read_leaves(g->r, &g->f, g->net, &parted);
     int64_t position = (g->f.gap > 0) ? floored(t, g->f.step) : 0;
     int32_t i;
     if (fresh) {
         reset_network(&g->f, w, t, position);
-        g->net->begun = true;
+        g->net->started = true;
         g->net->parted = false;
         set_due(g, t);
     } else if (g->j->position == t) {

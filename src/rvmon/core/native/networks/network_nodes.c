@@ -177,14 +177,14 @@ static void add_windows_filled(const form *f, const network *w, const operator_p
             }
         } else {
             int32_t i = range_from(known, first);
-            const bool begun = (i < known->end) && (known->at[i].first <= first);
-            all = begun && (known->at[i].last >= end);
+            const bool started = (i < known->end) && (known->at[i].first <= first);
+            all = started && (known->at[i].last >= end);
             if (all) {
                 until = (known->at[i].last >= w->last)
                     ? last : up_to(f, w, known->at[i].last + 1, -n->high - 1);
             } else if ((f->gap > 0) || ((n->low <= 0) && (n->high >= 0))) {
                 /* No window is empty: go to the first one that starts after the unknown positions. */
-                i += begun ? 1 : 0;
+                i += started ? 1 : 0;
                 until = from_on(f, w, (i < known->end) ? known->at[i].first - 1 : w->last,
                                 1 - n->low) - 1;
             } else {

@@ -298,7 +298,7 @@ static int64_t next_new(const judging *g, int64_t position)
  * their positions; those before the next added position are skipped. */
 void judge_added(judging *g, int64_t t)
 {
-    int64_t asked = -NEVER;
+    int64_t upcoming = -NEVER;
     int32_t before = -1;
     int32_t at = g->j->first;
     if (!g->net->parted && (decided_position(g) == NEVER)) {
@@ -307,13 +307,13 @@ void judge_added(judging *g, int64_t t)
     while (at >= 0) {
         const int32_t next = attempt_of(g, at)->next;
         const int64_t position = position_of(attempt_of(g, at));
-        if (position > asked) {
-            asked = next_new(g, position);
-            if (asked == NEVER) {
+        if (position > upcoming) {
+            upcoming = next_new(g, position);
+            if (upcoming == NEVER) {
                 break;
             }
         }
-        if ((position >= asked) && !judge_attempt(g, at, t)) {
+        if ((position >= upcoming) && !judge_attempt(g, at, t)) {
             remove_attempt(g->r, g->index, before, at);
         } else if (is_undecidable(attempt_of(g, at))) {
             move_to_undecidable(g->r, g->index, before, at);

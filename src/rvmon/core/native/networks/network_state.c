@@ -152,14 +152,14 @@ void put_networks(situation *s, run *r, int32_t index)
         for (i = 0; i < f.form->operators.count; i++) {
             const operator_state *o = &w->nodes[i];
             const bool since = f.nodes[i].kind == OP_SINCE;
-            const int64_t asked = since ? least(o->wanted, o->base - 1) : o->wanted;
+            const int64_t from = since ? least(o->wanted, o->base - 1) : o->wanted;
             put_word(s, o->base - ref);
             for (value = 0; value < 2; value++) {
                 const ranges *known = &o->known[value];
                 for (k = known->first; k < known->end; k++) {
                     const range *one = &known->at[k];
-                    if (one->last >= asked) {
-                        put_word(s, ((one->first > asked) ? one->first : asked) - ref);
+                    if (one->last >= from) {
+                        put_word(s, ((one->first > from) ? one->first : from) - ref);
                         put_word(s, one->last - ref);
                     }
                 }
@@ -259,9 +259,9 @@ static int32_t opened(rv_monitor *m, ranges *r, int32_t place)
 
 void ranges_put(rv_monitor *m, ranges *r, int32_t place, int64_t first, int64_t last)
 {
-    const bool behind = (place == r->end) && (place < r->room); /* the usual case: append */
-    const int32_t i = behind ? place : opened(m, r, place);
-    r->end += behind ? 1 : 0;
+    const bool appends = (place == r->end) && (place < r->room); /* the usual case: append */
+    const int32_t i = appends ? place : opened(m, r, place);
+    r->end += appends ? 1 : 0;
     if (i >= 0) {
         r->at[i].first = first;
         r->at[i].last = last;

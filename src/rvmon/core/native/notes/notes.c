@@ -59,7 +59,7 @@ bool make_notes(run *r)
         }
         clear_noting(r, i);
     }
-    r->truth_log->begun = RV_NO_TIME;
+    r->truth_log->since = RV_NO_TIME;
     reset_truth_log(r, RV_NO_TIME);
     return true;
 }
@@ -126,7 +126,7 @@ void copy_truth_log(run *made, const run *r)
         made->truth_log->nodes[i].moved_at = RV_NO_TIME;
     }
     made->truth_log->moved_at = r->truth_log->moved_at;
-    made->truth_log->begun = r->truth_log->begun;
+    made->truth_log->since = r->truth_log->since;
 }
 
 /* A node changes at position `t`; `was` is its old truth. */

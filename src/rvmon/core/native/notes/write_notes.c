@@ -69,7 +69,7 @@ static int64_t note_state(run *r, int32_t index, int64_t t)
         return -1;
     }
     made[0] = count;
-    made[1] = r->truth_log->begun;
+    made[1] = r->truth_log->since;
     awaits_birth = pack_leaves(r, index, before, &made[2]);
     pack_truths(r, judged->propositions, before, &made[2 + leaves]);
     for (i = 0; i < judged->propositions.count; i++) {
@@ -307,12 +307,12 @@ int64_t keep_note(rv_monitor *m, kept_notes *to, int64_t note)
     words = &m->notes[note];
     made = keep_words(to, words, words[0] >> 40);
     if (words[1] >= 0) {
-        int64_t *stands = &m->notes[words[1]];
-        if (stands[0] >= 0) { /* else it was copied before */
-            const int64_t place = keep_words(to, stands, stands[0]);
-            stands[0] = -1 - place;
+        int64_t *state = &m->notes[words[1]];
+        if (state[0] >= 0) { /* else it was copied before */
+            const int64_t place = keep_words(to, state, state[0]);
+            state[0] = -1 - place;
         }
-        to->words[made + 1] = -1 - stands[0];
+        to->words[made + 1] = -1 - state[0];
     }
     if ((((words[0] >> 8) & NOTE_NETWORK) != 0) && (words[3] >= 0)) {
         const int64_t others = words[3] >> 32;

@@ -19,15 +19,15 @@ static inline bool has(const plan *p, int32_t which, int64_t first, int64_t coun
     return (first >= 0) && (count >= 0) && (first + count <= p->counts[which]);
 }
 
-/* Whether a list lies in SEC_LISTS and all its numbers are in [low, behind). */
-static inline bool lists(const plan *p, list l, int64_t low, int64_t behind)
+/* Whether a list lies in SEC_LISTS and all its numbers are in [low, end). */
+static inline bool lists(const plan *p, list l, int64_t low, int64_t end)
 {
     int32_t i;
     if (!has(p, SEC_LISTS, l.first, l.count)) {
         return false;
     }
     for (i = 0; i < l.count; i++) {
-        if (!is_within(p->lists[l.first + i], low, behind)) {
+        if (!is_within(p->lists[l.first + i], low, end)) {
             return false;
         }
     }
@@ -35,9 +35,9 @@ static inline bool lists(const plan *p, list l, int64_t low, int64_t behind)
 }
 
 /* The same for the lists of both phases. */
-static inline bool both(const plan *p, const list *phases, int64_t low, int64_t behind)
+static inline bool both(const plan *p, const list *phases, int64_t low, int64_t end)
 {
-    return lists(p, phases[0], low, behind) && lists(p, phases[1], low, behind);
+    return lists(p, phases[0], low, end) && lists(p, phases[1], low, end);
 }
 
 /* Whether count + 1 offsets start at 0, never decrease, and end at `end`. */

@@ -181,10 +181,10 @@ static bool check_memory(const part_plan *x, const node_plan *n, int32_t *timed_
 static bool check_weights(const plan *p, const part_plan *x, const link_plan *l)
 {
     const judge_plan *j = &p->judges[x->judges.first + l->judge];
-    const int64_t behind = ((j->automaton >= 0) && (j->diagram < 0)) ? MOST : 1;
+    const int64_t end = ((j->automaton >= 0) && (j->diagram < 0)) ? MOST : 1;
     int32_t v;
     for (v = 0; v < 3; v++) {
-        if (!is_within(l->worse[v], 0, behind) || !is_within(l->better[v], 0, behind)) {
+        if (!is_within(l->worse[v], 0, end) || !is_within(l->better[v], 0, end)) {
             return false;
         }
     }

@@ -7,14 +7,14 @@ static bool has_ints(const plan *p, int64_t first, int64_t count)
     return has(p, SEC_INTS, first, count);
 }
 
-static bool ints_within(const plan *p, int64_t first, int64_t count, int64_t low, int64_t behind)
+static bool ints_within(const plan *p, int64_t first, int64_t count, int64_t low, int64_t end)
 {
     int64_t i;
     if (!has_ints(p, first, count)) {
         return false;
     }
     for (i = 0; i < count; i++) {
-        if (!is_within(p->ints[first + i], low, behind)) {
+        if (!is_within(p->ints[first + i], low, end)) {
             return false;
         }
     }

@@ -306,10 +306,10 @@ void cover(run *r, int64_t t)
     }
     for (i = 0; i < c->called_count; i++) {
         const int32_t number = c->called[i];
-        const bool goes_on = (r->part->watches[number].is_pulse != 0) && (truth_of(r, number) == IS_TRUE);
-        c->is_called[number] = goes_on ? 1 : 0;
+        const bool continues = (r->part->watches[number].is_pulse != 0) && (truth_of(r, number) == IS_TRUE);
+        c->is_called[number] = continues ? 1 : 0;
         c->called[kept] = number;
-        kept += goes_on ? 1 : 0;
+        kept += continues ? 1 : 0;
     }
     c->called_count = kept;
 }

@@ -237,7 +237,8 @@ static void put_judge(situation *s, run *r, int32_t index)
     int32_t at;
     put_word(s, j->before + (j->running ? 4 : 0) + ((j->failed_at < NEVER) ? 8 : 0) + ((j->undecidable >= 0) ? 16 : 0)
                + (j->blind ? 32 : 0) + ((j->failed > 0U) ? 64 : 0) + ((j->passed > 0U) ? 128 : 0));
-    if (networked && (j->net != NULL) && j->net->begun && ((j->first >= 0) || needs_every_position(r, index))) {
+    if (networked && (j->net != NULL) && j->net->started
+        && ((j->first >= 0) || needs_every_position(r, index))) {
         judging g = judging_of(r, index);
         learn_all(&g, s->now, last_at(&g, s->now));
         judge_added(&g, s->now);

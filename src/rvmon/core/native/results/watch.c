@@ -16,7 +16,7 @@ static form kept_form(const run *r)
 bool begin_watch(home *h)
 {
     if (h->truths != NULL) {
-        h->truths->begun = false;
+        h->truths->started = false;
     }
     h->is_blind = false;
     return ((h->part->plan->watches.count == 0) || begin_cover(h))
@@ -48,7 +48,7 @@ static bool begin_truths(home *h, const form *f, int64_t t)
         }
     }
     reset_network(f, &h->truths->readings[0], t, (f->gap > 0) ? floored(t, f->step) : 0);
-    h->truths->begun = true;
+    h->truths->started = true;
     h->truths->parted = false;
     h->truths->turn = NEVER;
     return true;
@@ -72,7 +72,7 @@ static void keep_truths(run *r, int64_t t)
 {
     home *h = r->home;
     const form f = kept_form(r);
-    const bool fresh = (h->truths == NULL) || !h->truths->begun;
+    const bool fresh = (h->truths == NULL) || !h->truths->started;
     bool parted = false;
     bool changed;
     if (h->monitor->spoilt || (fresh && !begin_truths(h, &f, t))) {
@@ -115,7 +115,7 @@ void watch(run *r, int64_t t)
 void end_watch(run *r, int64_t end, int64_t reached)
 {
     networks *net = r->home->truths;
-    if ((net != NULL) && net->begun && !r->home->monitor->spoilt) {
+    if ((net != NULL) && net->started && !r->home->monitor->spoilt) {
         const form f = kept_form(r);
         stay(&f, net, reached, (f.gap > 0) ? floored(end, f.step) : net->readings[0].last);
     }
@@ -131,7 +131,7 @@ int64_t rv_truths(const rv_monitor *m, int32_t operator_number, bool better, boo
         || (operator_number >= h->part->forms[h->part->plan->truths].operators.count)) {
         return -1;
     }
-    if ((h->truths == NULL) || !h->truths->begun || h->is_blind || m->spoilt) {
+    if ((h->truths == NULL) || !h->truths->started || h->is_blind || m->spoilt) {
         return 0;
     }
     known = &h->truths->readings[(better && h->truths->parted) ? 1 : 0]

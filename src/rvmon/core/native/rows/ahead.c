@@ -86,14 +86,14 @@ static bool stays(const column_watch *w, int64_t first, int32_t count)
 }
 
 /* The rows whose `says` is between two bounds. */
-static uint64_t rows_that_say(const rv_column *c, int64_t first, int32_t count, uint8_t least_said,
-                              uint8_t most_said)
+static uint64_t rows_that_say(const rv_column *c, int64_t first, int32_t count, uint8_t least,
+                              uint8_t most)
 {
     const uint8_t *says = &c->says[first];
     uint8_t one[TOGETHER] = {0};
     int32_t i;
     for (i = 0; i < count; i++) {
-        one[i] = (uint8_t)((says[i] >= least_said) & (says[i] <= most_said));
+        one[i] = (uint8_t)((says[i] >= least) & (says[i] <= most));
     }
     return bits_of(one);
 }
@@ -120,14 +120,14 @@ static bool find_turns(const column_watch *w, int64_t first, int32_t count, uint
 /* Examine the updates of a signal one by one, and mark those that may change something. */
 static void look_for_news(const batch *s, column_watch *w, int64_t first)
 {
-    uint64_t left = w->said;
+    uint64_t left = w->given;
     while (left != 0U) {
         const int32_t k = lowest_bit(left);
         const uint64_t bit = UINT64_C(1) << k;
         const rv_number value = number_in(w->column, first + k);
         left &= left - 1;
         if (w->ignores_nan && (value.kind == RV_UNKNOWN)) {
-            w->said &= ~bit;
+            w->given &= ~bit;
         } else if (w->how == EACH_UPDATE) {
             w->needed |= bit;
         } else if ((w->how == BY_CONSTANTS) ? !compares_alike(w, &value)
@@ -178,20 +178,20 @@ static uint64_t look_at_column(const batch *s, column_watch *w, int64_t first, i
 {
     const rv_column *c = w->column;
     uint64_t moved;
-    w->said = bits_before(count);
+    w->given = bits_before(count);
     w->needed = 0;
     if (w->is_event) {
         if (c->says != NULL) {
-            w->said = rows_that_say(c, first, count, RV_SAYS_NO, RV_SAYS_YES);
+            w->given = rows_that_say(c, first, count, RV_SAYS_NO, RV_SAYS_YES);
             w->needed = rows_that_say(c, first, count, RV_SAYS_UNKNOWN, RV_SAYS_YES);
         } else {
-            w->needed = w->said;
+            w->needed = w->given;
         }
-        w->needed = (w->how == EACH_UPDATE) ? w->said : w->needed;
+        w->needed = (w->how == EACH_UPDATE) ? w->given : w->needed;
         return w->needed;
     }
     if (s->counts && w->is_counted) {
-        w->needed = w->said;
+        w->needed = w->given;
         return rows_unknown(c, first, count);
     }
     w->is_idle = is_idle_now(s, w);
@@ -206,7 +206,7 @@ static uint64_t look_at_column(const batch *s, column_watch *w, int64_t first, i
         moved = 0;
     } else {
         if (c->says != NULL) {
-            w->said = rows_that_say(c, first, count, RV_SAYS_UNKNOWN, RV_SAYS_YES);
+            w->given = rows_that_say(c, first, count, RV_SAYS_UNKNOWN, RV_SAYS_YES);
         }
         if ((w->how == EACH_UPDATE) || !find_turns(w, first, count, &w->needed)) {
             w->needed = 0;
@@ -215,8 +215,8 @@ static uint64_t look_at_column(const batch *s, column_watch *w, int64_t first, i
         moved = w->needed;
     }
     if (w->perishable) {
-        w->needed = w->said;
-        moved |= is_ageless(s, w) ? (w->said & (~w->said + 1)) : 0U; /* the first update */
+        w->needed = w->given;
+        moved |= is_ageless(s, w) ? (w->given & (~w->given + 1)) : 0U; /* the first update */
     }
     return moved;
 }
@@ -298,7 +298,7 @@ void look_ahead(batch *s, int64_t row)
     }
     for (i = 0; i < s->columns; i++) {
         column_watch *w = &s->watches[i];
-        w->said = 0;
+        w->given = 0;
         w->needed = 0;
         if (w->how != NO_UPDATES) {
             s->moved |= look_at_column(s, w, row, (int32_t)s->together);

@@ -183,7 +183,7 @@ static void hold_row(const batch *s, int64_t row)
     int32_t i;
     for (i = 0; i < s->columns; i++) {
         const column_watch *w = &s->watches[i];
-        if (!w->is_event && (w->how != NO_UPDATES) && bit_at(w->said, row - s->first)) {
+        if (!w->is_event && (w->how != NO_UPDATES) && bit_at(w->given, row - s->first)) {
             root_of(s, w, 0)->value[w->readers[0].local] = number_in(w->column, row);
         }
     }
@@ -241,7 +241,7 @@ static void give_rows(const batch *s, run *r, int32_t index, int64_t row, int64_
     gauging *w = begin_gauging(r, index, s->times[end - 1], s->times[end - 1]);
     bool differs = false;
     int32_t k;
-    give_behind(w, s->times[row] - 1);
+    give_after(w, s->times[row] - 1);
     q->passes = false;
     for (k = 0; k < shape->plan->measures.count; k++) {
         differs = lay_leaf(s, r, shape, k, row, end) || differs;
@@ -265,7 +265,7 @@ static void measure_for(const batch *s, run *r, int32_t index, int64_t row, int6
         enter_position(r, index, s->times[row]);
         i++;
     }
-    if ((i < end - 1) && ((q->asks.first < q->asks.end) || is_kept_up(r, index))) {
+    if ((i < end - 1) && ((q->requests.first < q->requests.end) || is_kept_up(r, index))) {
         give_rows(s, r, index, i, end - 1);
     }
     if (is_streamed(r, index)) { /* before any position is settled */

@@ -19,10 +19,10 @@ static int64_t alarm_of_all(const rv_monitor *m)
 }
 
 /* The last row in [from, row) in which a column has an update; -1: none. */
-static int64_t last_said(const batch *s, const column_watch *w, int64_t from, int64_t row)
+static int64_t last_given(const batch *s, const column_watch *w, int64_t from, int64_t row)
 {
-    const uint64_t said = w->said & bits_before(row - s->first) & ~bits_before(from - s->first);
-    return (said != 0U) ? s->first + highest_bit(said) : -1;
+    const uint64_t given = w->given & bits_before(row - s->first) & ~bits_before(from - s->first);
+    return (given != 0U) ? s->first + highest_bit(given) : -1;
 }
 
 /* Store the value of a row in every reader without evaluating anything: it compares as the previous value
@@ -45,7 +45,7 @@ static void refresh(batch *s, int64_t row)
     int32_t k;
     for (i = 0; s->perishes && (i < s->columns); i++) {
         const column_watch *w = &s->watches[i];
-        const int64_t last = w->perishable ? last_said(s, w, s->fresh, row) : -1;
+        const int64_t last = w->perishable ? last_given(s, w, s->fresh, row) : -1;
         for (k = 0; (last >= 0) && (k < w->reader_count); k++) {
             set_stale(root_of(s, w, k), w->readers[k].local, s->times[last]);
             some = true;
@@ -72,7 +72,7 @@ void turn_from(batch *s, int64_t row)
         refresh(s, row);
         for (i = 0; i < s->columns; i++) {
             const column_watch *w = &s->watches[i];
-            const int64_t last = last_said(s, w, s->first, row);
+            const int64_t last = last_given(s, w, s->first, row);
             if ((last >= 0) && (w->how == BY_CONSTANTS) && !w->perishable && (s->m->shapes == NULL)) {
                 hold_in_all(s, w, last);
             }

@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* What a column says in a row. */
-static int32_t said_in(const rv_column *c, int64_t row)
+static int32_t state_in(const rv_column *c, int64_t row)
 {
     return (c->says == NULL) ? RV_SAYS_YES : (int32_t)c->says[row];
 }
@@ -14,7 +14,7 @@ static int32_t said_in(const rv_column *c, int64_t row)
 rv_number number_in(const rv_column *c, int64_t row)
 {
     rv_number made = UNKNOWN_NUMBER;
-    if ((said_in(c, row) != RV_SAYS_YES) || (c->values == NULL)) {
+    if ((state_in(c, row) != RV_SAYS_YES) || (c->values == NULL)) {
         return made;
     }
     made.kind = RV_WHOLE;
@@ -31,7 +31,7 @@ static bool has_payload(const column_watch *w, int64_t row)
 {
     int32_t i;
     for (i = 0; i < w->fields; i++) {
-        if (said_in(&w->column->fields[i], row) != NO_UPDATE) {
+        if (state_in(&w->column->fields[i], row) != NO_UPDATE) {
             return true;
         }
     }
@@ -54,7 +54,7 @@ static void add_signal(row_sample *made, const column_watch *w, int64_t row, int
 {
     int64_t i;
     for (i = end - 1; i >= row; i--) {
-        if (said_in(w->column, i) != NO_UPDATE) {
+        if (state_in(w->column, i) != NO_UPDATE) {
             const rv_number value = number_in(w->column, i);
             const bool known = value.kind != RV_UNKNOWN;
             if (known || !w->ignores_nan) {
@@ -85,7 +85,7 @@ static void add_event(row_sample *made, const column_watch *w, int64_t row, int6
     bool carried = false;
     int64_t i;
     for (i = row; i < end; i++) {
-        const int32_t says = said_in(w->column, i);
+        const int32_t says = state_in(w->column, i);
         if (says != NO_UPDATE) {
             most = (says > most) ? says : most;
             if ((says == RV_SAYS_YES) && has_payload(w, i)) {

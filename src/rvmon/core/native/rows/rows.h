@@ -2,7 +2,7 @@
  * compared column by column, without branches where possible, and only rows at which something can
  * change are judged as samples (rv_step). The result is the same as judging each row.
  *
- * Each column has two row masks: `said`, it has an update; `needed`, the core has to see that update. A
+ * Each column has two row masks: `given`, it has an update; `needed`, the core has to see that update. A
  * row is judged if a column needs it, or if something is due by then. */
 #ifndef RVMON_ROWS_H
 #define RVMON_ROWS_H
@@ -39,7 +39,7 @@ typedef struct {
     bool is_counted;           /* its values reach nothing but bins: counted.c */
     rv_number last;            /* its last value in the rows examined so far */
     span between;              /* values in it, or equal to `last`, compare as `last` does */
-    uint64_t said;             /* rows with an update, as bits */
+    uint64_t given;            /* rows with an update, as bits */
     uint64_t needed;           /* rows that the core has to see */
 } column_watch;
 

@@ -25,7 +25,7 @@ bool starts_here(const run *r, int32_t index)
 /* Whether the attempt of a run is over and completely reported. */
 bool is_idle(const run *r)
 {
-    return (next_open(r, r->judged, -1) < 0) && !r->judges[r->judged].running && (r->asked == 0);
+    return (next_open(r, r->judged, -1) < 0) && !r->judges[r->judged].running && (r->pending_margins == 0);
 }
 
 /* The instant by which an attempt is ordered among those that became sure, or that are in doubt. */

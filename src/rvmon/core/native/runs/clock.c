@@ -85,7 +85,7 @@ static void start(run *r, int64_t t)
     r->at.started = true;
     r->at.starting = IS_TRUE;
     r->at.origin = t;
-    r->at.begun = t;
+    r->at.sure_from = t;
     recheck_all(r);
 }
 

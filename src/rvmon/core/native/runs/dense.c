@@ -73,7 +73,7 @@ void run_begin_dense(run *r, int64_t t)
     if (!r->at.started) {
         r->at.started = true;
         r->at.origin = t;
-        r->at.begun = NEVER;
+        r->at.sure_from = NEVER;
     }
     r->at.presence = ARE_THERE;
     r->opening = false;

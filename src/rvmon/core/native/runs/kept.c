@@ -44,7 +44,7 @@ void keep_updates(home *h, int64_t t)
         made->local = in->local;
         made->event = in->event;
         made->says = u->says;
-        made->value = in->event ? UNKNOWN_NUMBER : number_said(u);
+        made->value = in->event ? UNKNOWN_NUMBER : number_given(u);
         if ((fields > 0) && (u->fields != NULL)) {
             const size_t size = (size_t)fields * sizeof *u->fields;
             rv_number *own = arena_take(&m->memory, size);

@@ -213,7 +213,7 @@ static void open_instance(home *h, int32_t at, int64_t t, bool is_known)
         made->over = h->root->over;
         made->at.gathered = h->root->at.gathered;
         if ((made->truth_log != NULL) && made->at.started) {
-            made->truth_log->begun = made->at.position; /* notes have no history before */
+            made->truth_log->since = made->at.position; /* notes have no history before */
         }
         if (made->at.started && (made->at.presence == ARE_THERE)) {
             reevaluate_varying(made, made->at.position, made->at.gathered);
@@ -295,7 +295,7 @@ int32_t says_for_instance(const run *r, const rv_update *u)
 static bool is_quiet(const run *r)
 {
     int32_t i;
-    if (r->opening || (r->asked > 0) || (r->first_child != NULL) || (r->repeating_count > 0)
+    if (r->opening || (r->pending_margins > 0) || (r->first_child != NULL) || (r->repeating_count > 0)
         || ((GAP(r) > 1) && (r->at.awaited < NEVER))) {
         return false;
     }

@@ -120,10 +120,10 @@ int64_t counted_before(home *h, numbering *n, int32_t at)
     const int64_t t = own->became;
     int64_t found = 0;
     int32_t i;
-    while ((n->begun < s->count) && (s->counted[n->begun].first <= t)) {
-        n->begun++;
+    while ((n->started < s->count) && (s->counted[n->started].first <= t)) {
+        n->started++;
     }
-    for (i = n->over; i < n->begun; i++) {
+    for (i = n->over; i < n->started; i++) {
         const repetition x = s->counted[i];
         const int64_t since = t - x.first;
         if (since > (x.count - 1) * x.period) {

@@ -250,7 +250,7 @@ void clear_run(run *r)
     clear_judges(r);
     if (r->truth_log != NULL) {
         reset_truth_log(r, RV_NO_TIME);
-        r->truth_log->begun = RV_NO_TIME;
+        r->truth_log->since = RV_NO_TIME;
     }
 }
 
@@ -280,11 +280,11 @@ void clear_judges(run *r)
         clear_noting(r, i);
         clear_queue(&r->judges[i]);
         if (windows != NULL) {
-            windows->begun = false;
+            windows->started = false;
             windows->kept = 0;
         }
         if (net != NULL) {
-            net->begun = false;
+            net->started = false;
             net->parted = false;
             net->visits = 0;
             net->turn = NEVER;

@@ -37,7 +37,7 @@ static inline void demand(carrier *c, bool so)
 void carry_byte(carrier *c, uint8_t *x, uint8_t most);
 void carry_bytes(carrier *c, uint8_t *x, int64_t count, uint8_t most);
 void carry_flag(carrier *c, bool *x);
-void carry_int(carrier *c, int32_t *x, int64_t low, int64_t behind);
+void carry_int(carrier *c, int32_t *x, int64_t low, int64_t end);
 void carry_count(carrier *c, uint32_t *x);
 void carry_word(carrier *c, uint64_t *x);
 void carry_long(carrier *c, int64_t *x, int64_t low, int64_t most);
@@ -48,8 +48,8 @@ void carry_number(carrier *c, rv_number *x);
 /* A count of items that take at least `each` bytes, so that a forged count cannot ask for more memory
  * than there are bytes. */
 void carry_size(carrier *c, int32_t *x, int64_t most, size_t each);
-/* A list of distinct numbers below `behind`, in order; marks them in `listed` unless it is NULL. */
-void carry_list(carrier *c, int32_t *items, int32_t *count, int32_t behind, uint8_t *listed);
+/* A list of distinct numbers below `end`, in order; marks them in `listed` unless it is NULL. */
+void carry_list(carrier *c, int32_t *items, int32_t *count, int32_t end, uint8_t *listed);
 /* Timers in heap order, so that the heap is restored as it was; `numbers` renames ids if not NULL. */
 void carry_timers(carrier *c, timers *h, int32_t ids, const int32_t *numbers);
 

@@ -99,13 +99,13 @@ void carry_long(carrier *c, int64_t *x, int64_t low, int64_t most)
     }
 }
 
-void carry_int(carrier *c, int32_t *x, int64_t low, int64_t behind)
+void carry_int(carrier *c, int32_t *x, int64_t low, int64_t end)
 {
     uint64_t digits = (uint32_t)*x;
     int64_t found;
     carry_digits(c, &digits, 4);
     found = (digits > INT32_MAX) ? (int64_t)digits - (INT64_C(1) << 32) : (int64_t)digits;
-    demand(c, is_within(found, low, behind));
+    demand(c, is_within(found, low, end));
     if (!c->refused) {
         *x = (int32_t)found;
     }
@@ -171,17 +171,17 @@ void carry_size(carrier *c, int32_t *x, int64_t most, size_t each)
     }
 }
 
-void carry_list(carrier *c, int32_t *items, int32_t *count, int32_t behind, uint8_t *listed)
+void carry_list(carrier *c, int32_t *items, int32_t *count, int32_t end, uint8_t *listed)
 {
     uint8_t *own = listed;
     int32_t i;
-    carry_size(c, count, behind, 4);
+    carry_size(c, count, end, 4);
     if (c->reading && (own == NULL)) {
-        own = arena_take(&c->m->memory, (size_t)behind + 1);
+        own = arena_take(&c->m->memory, (size_t)end + 1);
         c->m->spoilt = c->m->spoilt || (own == NULL);
     }
     for (i = 0; (i < *count) && !is_lost(c); i++) {
-        carry_int(c, &items[i], 0, behind);
+        carry_int(c, &items[i], 0, end);
         if (c->reading && !c->refused) {
             demand(c, own[items[i]] == 0U);
             own[items[i]] = 1;
@@ -191,7 +191,7 @@ void carry_list(carrier *c, int32_t *items, int32_t *count, int32_t behind, uint
         *count = 0;
     }
     if (c->reading && (listed == NULL)) {
-        arena_give(&c->m->memory, own, (size_t)behind + 1);
+        arena_give(&c->m->memory, own, (size_t)end + 1);
     }
 }
 

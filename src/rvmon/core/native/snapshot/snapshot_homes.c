@@ -298,14 +298,14 @@ static void carry_group(carrier *c, home *h, int32_t number)
     covering *own = h->covering;
     const bool last = number == h->part->plan->groups.count - 1;
     const int32_t first = h->part->groups[number].first;
-    const int32_t behind = last ? own->items : h->part->groups[number + 1].first;
+    const int32_t end = last ? own->items : h->part->groups[number + 1].first;
     covered *s = &own->groups[number];
     int32_t i;
     carry_byte(c, &s->before, IS_TRUE);
-    carry_size(c, &s->current, (int64_t)behind - first, 4);
+    carry_size(c, &s->current, (int64_t)end - first, 4);
     for (i = 0; (i < s->current) && !is_lost(c); i++) {
         int32_t *item = &own->current_items[first + i];
-        carry_int(c, item, first, behind);
+        carry_int(c, item, first, end);
         if (c->reading && !c->refused) {
             demand(c, own->is_current[*item] == 0U);
             own->is_current[*item] = 1;

@@ -294,10 +294,10 @@ static void carry_network(carrier *c, const form *f, network *w)
 void carry_networks(carrier *c, const form *f, networks **own)
 {
     networks *net = *own;
-    bool begun = (net != NULL) && net->begun;
+    bool started = (net != NULL) && net->started;
     int32_t i;
-    carry_flag(c, &begun);
-    if (!begun || c->refused) {
+    carry_flag(c, &started);
+    if (!started || c->refused) {
         return;
     }
     if (c->reading) {
@@ -306,7 +306,7 @@ void carry_networks(carrier *c, const form *f, networks **own)
         if (net == NULL) {
             return;
         }
-        net->begun = true;
+        net->started = true;
     }
     carry_bytes(c, net->leaf, f->form->leaves, 3);
     carry_long(c, &net->searched, -LIMIT, LIMIT);
@@ -324,7 +324,7 @@ static void carry_changes(carrier *c, changes *x)
     int32_t count = x->count;
     int64_t before = -LIMIT;
     int32_t i;
-    carry_flag(c, &x->begun);
+    carry_flag(c, &x->initial);
     carry_size(c, &count, MOST, 8);
     for (i = 0; (i < count) && !is_lost(c); i++) {
         int64_t one = c->reading ? 0 : change_at(x, i);
@@ -340,11 +340,11 @@ void carry_chain(carrier *c, run *r, int32_t index)
 {
     const chaining g = chaining_of(r, index);
     chain *own = g.c;
-    bool begun = (own != NULL) && own->begun;
+    bool started = (own != NULL) && own->started;
     int32_t i;
     int32_t level;
-    carry_flag(c, &begun);
-    if (!begun || c->refused) {
+    carry_flag(c, &started);
+    if (!started || c->refused) {
         return;
     }
     if (c->reading) {
@@ -353,7 +353,7 @@ void carry_chain(carrier *c, run *r, int32_t index)
         if (own == NULL) {
             return;
         }
-        own->begun = true;
+        own->started = true;
     }
     carry_bytes(c, own->letter, FOLLOWED, 3);
     carry_int(c, &own->kept, 0, MOST / 2);

@@ -20,7 +20,7 @@ void carry_truth_log(carrier *c, run *r)
     truth_log *s = r->truth_log;
     int32_t i;
     carry_position(c, &s->moved_at);
-    carry_position(c, &s->begun);
+    carry_position(c, &s->since);
     for (i = 0; (i < r->part->logged) && !is_lost(c); i++) {
         logged_node *own = &s->nodes[i];
         uint8_t moved = ((own->moved_at == s->moved_at) && (s->moved_at != RV_NO_TIME)) ? 1 : 0;

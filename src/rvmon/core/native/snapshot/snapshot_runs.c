@@ -144,13 +144,13 @@ static void carry_tally(carrier *c, tally *x)
 /* Demand that members of windows are in range and ascend, as sums of instants rely on that. */
 static void demand_members(carrier *c, const run *r, const stretches *s)
 {
-    int64_t behind = -LIMIT;
+    int64_t end = -LIMIT;
     int32_t i;
     for (i = 0; (i < s->count) && !is_lost(c); i++) {
         const stretch *one = &s->at[(s->head + i) & (s->room - 1)];
-        demand(c, (one->begin >= behind) && (one->begin < LIMIT) && (one->end >= one->begin - step_of(r))
+        demand(c, (one->begin >= end) && (one->begin < LIMIT) && (one->end >= one->begin - step_of(r))
                   && (one->end < LIMIT));
-        behind = one->end;
+        end = one->end;
     }
     demand(c, !s->growing || (s->count > 0));
 }
@@ -235,7 +235,7 @@ static bool is_in_time(const run *r)
     if (r->at.dense ? (gap > 0) || !r->at.started : (r->at.presence == MAY_BE_THERE) && (gap == 0)) {
         return false;
     }
-    if (r->at.started && (r->at.presence == ARE_THERE) && !r->at.dense && (r->at.begun == NEVER)) {
+    if (r->at.started && (r->at.presence == ARE_THERE) && !r->at.dense && (r->at.sure_from == NEVER)) {
         return false;
     }
     if ((r->at.presence == ARE_THERE_NEXT) && !r->at.started) {
@@ -254,7 +254,7 @@ static void carry_progress(carrier *c, run *r)
 {
     carry_instant(c, &r->at.origin);
     carry_instant(c, &r->at.dense_from);
-    carry_instant_or(c, &r->at.begun, NEVER);
+    carry_instant_or(c, &r->at.sure_from, NEVER);
     carry_instant(c, &r->at.position);
     carry_long(c, &r->at.before, -NEVER, LIMIT);
     carry_long(c, &r->at.alarm, -LIMIT, NEVER);

@@ -288,10 +288,10 @@ int64_t first_failure(const chaining *g, chain_reading *w, int64_t position)
 }
 
 /* The last position before another at which the chain is not excused; INT64_MIN: none is known. */
-static int64_t last_mattering(const chaining *g, chain_reading *w, int64_t behind)
+static int64_t last_mattering(const chaining *g, chain_reading *w, int64_t stop)
 {
-    const int32_t i = changes_until(&w->excused, behind - 1);
-    int64_t end = behind;
+    const int32_t i = changes_until(&w->excused, stop - 1);
+    int64_t end = stop;
     if (value_after(&w->excused, i)) {
         if (i == 0) {
             return INT64_MIN;
@@ -305,12 +305,12 @@ static int64_t last_mattering(const chaining *g, chain_reading *w, int64_t behin
     return end - 1;
 }
 
-/* The stamp at which it is known that the chain held, or was excused, on [first, behind). As values
+/* The stamp at which it is known that the chain held, or was excused, on [first, stop). As values
  * become known in order, it is the stamp of the last position that matters. */
 int64_t known_between(const chaining *g, chain_reading *w, int64_t first,
-                             int64_t behind)
+                             int64_t stop)
 {
-    const int64_t last = last_mattering(g, w, behind);
+    const int64_t last = last_mattering(g, w, stop);
     int64_t stamp = INT64_MIN;
     if (last >= first) {
         (void)value_of_chain(g, w, last, &stamp);

@@ -173,7 +173,7 @@ static void begin_chain(const chaining *g, int64_t position, const uint8_t *lett
 {
     chain *c = g->c;
     (void)memcpy(c->letter, letter, FOLLOWED);
-    c->begun = true;
+    c->started = true;
     c->parted = !is_known(letter);
     clear_changes(&c->stamps, false);
     begin_reading(g, &c->readings[0], position, 1);
@@ -198,7 +198,7 @@ void chain_visit(run *r, int32_t index, int64_t t)
         }
     }
     read_letter(&g, letter);
-    if (!g.c->begun || (g.j->first < 0)) {
+    if (!g.c->started || (g.j->first < 0)) {
         begin_chain(&g, position, letter);
     } else if (g.j->position == t) {
         return;
@@ -277,7 +277,7 @@ bool chain_outlasts(run *r, int32_t index, const attempt *x, int64_t end, int64_
            && (known_between(&g, w, position, last + 1) <= later(2 * reached, 2 * end + 1));
 }
 
-/* ---- changes: the positions at which a Boolean value toggles, in order, as a ring; `begun` is the
+/* ---- changes: the positions at which a Boolean value toggles, in order, as a ring; `initial` is the
  * value before all of them */
 
 int64_t change_at(const changes *c, int32_t i)
@@ -319,7 +319,7 @@ void copy_changes(rv_monitor *m, changes *made, const changes *c)
     int32_t i;
     made->head = 0;
     made->count = 0;
-    made->begun = c->begun;
+    made->initial = c->initial;
     for (i = 0; i < c->count; i++) {
         add_change(m, made, change_at(c, i));
     }
@@ -328,7 +328,7 @@ void copy_changes(rv_monitor *m, changes *made, const changes *c)
 bool changes_agree(const changes *a, const changes *b)
 {
     int32_t i;
-    if ((a->count != b->count) || (a->begun != b->begun)) {
+    if ((a->count != b->count) || (a->initial != b->initial)) {
         return false;
     }
     for (i = 0; i < a->count; i++) {
@@ -343,17 +343,17 @@ void clear_changes(changes *c, bool value)
 {
     c->head = 0;
     c->count = 0;
-    c->begun = value;
+    c->initial = value;
 }
 
 /* Number of changes tried one by one from the last query on; beyond that, bisection is faster. */
 #define NEAR 4
 
 /* The number of changes up to a position. Most queries are for the end of the list, or a little after
- * the last query (`asked`); the others bisect, without a branch that would be mispredicted. */
+ * the last query (`cursor`); the others bisect, without a branch that would be mispredicted. */
 int32_t changes_until(changes *c, int64_t position)
 {
-    int32_t low = (c->asked < c->count) ? c->asked : 0;
+    int32_t low = (c->cursor < c->count) ? c->cursor : 0;
     int32_t left = c->count;
     int32_t i;
     if ((left == 0) || (change_at(c, left - 1) <= position)) {
@@ -365,7 +365,7 @@ int32_t changes_until(changes *c, int64_t position)
     } else {
         for (i = 0; i < NEAR; i++) {
             if (change_at(c, low) > position) { /* at the last one if not before */
-                c->asked = low;
+                c->cursor = low;
                 return low;
             }
             low++;
@@ -378,14 +378,14 @@ int32_t changes_until(changes *c, int64_t position)
         left -= half;
     }
     low += ((left > 0) && (change_at(c, low) <= position)) ? 1 : 0;
-    c->asked = low;
+    c->cursor = low;
     return low;
 }
 
 /* The value after the first `count` changes. */
 bool value_after(const changes *c, int32_t count)
 {
-    return c->begun != ((count & 1) == 1);
+    return c->initial != ((count & 1) == 1);
 }
 
 /* Drop the changes before a position; the value before the rest follows from their number. */
@@ -394,7 +394,7 @@ void drop_changes(changes *c, int64_t position)
     while ((c->count > 0) && (change_at(c, 0) < position)) {
         c->head = (c->head + 1) & (c->room - 1);
         c->count--;
-        c->asked -= (c->asked > 0) ? 1 : 0;
-        c->begun = !c->begun;
+        c->cursor -= (c->cursor > 0) ? 1 : 0;
+        c->initial = !c->initial;
     }
 }

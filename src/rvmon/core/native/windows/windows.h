@@ -62,7 +62,7 @@ void forget_before(const chaining *g, int64_t position);
 bool is_known(const uint8_t *letter);
 void note_letter(const chaining *g, int64_t position, const uint8_t *letter);
 int64_t first_failure(const chaining *g, chain_reading *w, int64_t position);
-int64_t known_between(const chaining *g, chain_reading *w, int64_t first, int64_t behind);
+int64_t known_between(const chaining *g, chain_reading *w, int64_t first, int64_t stop);
 bool outcome_of(const chaining *g, chain_reading *w, int64_t at, int64_t *stamp);
 
 /* ---- windows.c */

@@ -1,6 +1,6 @@
 /* What a monitor of the core reports besides its records, as one checksum, to compare runs. */
-#ifndef RVMON_TOLD_H
-#define RVMON_TOLD_H
+#ifndef RVMON_CHECKSUM_H
+#define RVMON_CHECKSUM_H
 
 #include "core.h"
 
