@@ -172,21 +172,22 @@ def _obligation(judged: Judged, attempt: Undecided, now: int, end: int | None) -
     if end is not None:
         when, so_far = f" when the recording ended at {format_instant(end, origin)}", ""
     clauses = [f"still required{when}: {required or 'the rest of the consequent'}"]
-    clauses += [] if end is None or not attempt.sure else [_longer(attempt, end)]
+    deadline = _deadline(judged, attempt)
+    clauses += [] if end is None or not attempt.sure else _longer(attempt, end, deadline)
     clauses += [] if attempt.doubt is None else [str(attempt.doubt)]
     clauses += [outage_in_words(outage, origin) + so_far for outage in attempt.unborn]
-    return Explanation("; ".join(clauses), required, _deadline(judged, attempt))
+    return Explanation("; ".join(clauses), required, deadline)
 
 
-def _longer(attempt: Undecided, end: int) -> str:
-    """By how much a longer trace would have decided an attempt."""
+def _longer(attempt: Undecided, end: int, deadline: int | None) -> list[str]:
+    """By how much a longer trace would have decided an attempt, if that is certain."""
     reach = horizon(attempt.compiled.obligation.required)
     if reach is None:
-        return "it has no deadline"
+        return ["it has no deadline"] if deadline is None else []
     latest = attempt.triggered + reach
     if latest <= end:
-        return "1 ns more would have decided it"
-    return f"a recording more than {format_ticks(latest - end)} longer would have decided it"
+        return ["1 ns more would have decided it"]
+    return [f"a recording more than {format_ticks(latest - end)} longer would have decided it"]
 
 
 def _deadline(judged: Judged, attempt: Undecided) -> int | None:

@@ -138,6 +138,10 @@ LEFT = {
         "still required when the recording ended at 1 s: `within 3 s released` by 3 s; "
         "a recording more than 2 s longer would have decided it",
     ),
+    "a deadline within what has none": (
+        *("always (near -> within 3 s released)", "0 -near; 1 near", 2),
+        "still required when the recording ended at 2 s: `within 3 s released` by 4 s",
+    ),
     "windows in a window": (
         *("upon go\nthen within 5 s for 3 s near", "0 -near; 1 go; 3", None),
         "still required when the recording ended at 3 s: `within 5 s for 3 s near` by 6 s; "
@@ -190,6 +194,7 @@ LEFT = {
 
 
 DEADLINES = {"what is owed, and till when": 4 * S}
+DEADLINES |= {"a deadline within what has none": 4 * S}
 DEADLINES |= {"windows in a window": 6 * S, "the future of a past": 4 * S}
 
 
