@@ -98,6 +98,33 @@ requirement R
             assert disagreements(case, Maker(form, compiler)) == []
 
 
+@pytest.mark.parametrize("restored", [False, True])
+def test_hundreds_of_attempts_are_open_at_once(restored):
+    """Most samples change a comparison in a few of them only, and all hold the new value."""
+    spec = rvmon.loads("""signal x, y : real
+event e
+requirement R
+  upon e
+  let v = x
+  then within 300 ns y > v
+""")
+    rng, y, rows = random.Random(5), 0.0, []
+    for t in range(900):
+        y += rng.uniform(-0.02, 0.02) + (1.0 if t == 700 else 0.0)
+        rows.append((t, {"x": y + rng.expovariate(5), "y": y} | ({"e": {}} if t < 600 else {})))
+    monitor, found = spec.monitor(), {}
+    for t, row in rows:
+        if restored and t % 100 == 50:
+            monitor = spec.restore(monitor.snapshot())
+        for attempt in monitor.step_ns(t, row):
+            found[attempt.triggered] = (attempt.verdict, attempt.decided)
+    expected = {}
+    for t, row in rows[:600]:
+        met = [u for u, later in rows[t : t + 301] if later["y"] > row["x"]]
+        expected[t] = ("P", met[0]) if met else ("F", t + 301)
+    assert found == expected
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("time", ["", "time sampled every 10 ms\n"])
 @pytest.mark.parametrize("name", ["another event with the key", "what was before", "stretches"])

@@ -15,7 +15,7 @@
 #define NEVER RV_NEVER
 #define LIMIT (INT64_C(1) << 62)
 
-/* Truth values in Kleene's order, so that `and` is the minimum and `or` the maximum. */
+/* Truth values in Kleene's order: `and` is the minimum, `or` the maximum. */
 enum { IS_FALSE = 0, IS_UNKNOWN = 1, IS_TRUE = 2 };
 
 /* Locations: 0 and 1 are final in every automaton; a network's attempts are WAITING until decided. */
@@ -23,8 +23,8 @@ enum { FAILED = 0, PASSED = 1, WAITING = 2 };
 
 typedef struct home home;
 
-/* Timers: a binary min-heap of ids by due instant, indexed, so that a timer can be moved or cleared
- * in logarithmic time. A timer that is not set is due NEVER and not in the heap. */
+/* Timers: a binary min-heap of ids by due instant, indexed: a timer is moved or cleared in logarithmic
+ * time. A timer that is not set is due NEVER and not in the heap. */
 typedef struct {
     int64_t *due;              /* by id */
     int32_t *ids;              /* the heap */
@@ -150,8 +150,7 @@ struct run {
     int64_t opens_at;          /* no attempt starts earlier; NEVER: none ever starts */
     int64_t cut;               /* from this instant on the captured values are no longer known */
     int64_t occurred;          /* first occurrence of the key of this instance */
-    uint32_t rank;             /* of its instance, by first occurrence, from 1; 0: root, or unknown
-                                * key */
+    uint32_t rank;             /* of its instance, by first occurrence, from 1; else 0 */
     int32_t key;               /* index of its key in the home's keys */
     int32_t judged;            /* the judge of its one attempt, with captured values */
     int32_t starters;          /* judges whose attempts start here, as a bit set */
@@ -168,7 +167,7 @@ struct run {
     size_t copied;             /* size of the prefix of `block` that a fork copies */
     char *block;
     rv_number *captured;       /* the key of `for each`, then each `let` */
-    rv_number *value;          /* by signal, its current value */
+    rv_number *value;          /* by signal, its current value, or another one in its span */
     span *spans;               /* by signal, the interval in which no comparison of it changes */
     history *history;          /* by signal with SIGNAL_HISTORY */
     occurrences *payloads;     /* by event */
@@ -264,8 +263,7 @@ typedef struct {
     bool last;                 /* the last update of its sample */
 } past_update;
 
-/* What the runs of a part share: their lists, the pool of attempts, and the inbox of the current
- * sample. */
+/* What the runs of a part share: their lists, the pool of attempts, the inbox of a sample. */
 struct home {
     rv_monitor *monitor;
     const part *part;
@@ -277,6 +275,9 @@ struct home {
     run **runs;                /* by id, released ones among them */
     rv_number *values;         /* by run and signal, if the part captures values: `value` of the runs */
     span *spans;               /* the same for `spans` of the runs */
+    struct block_span *common; /* by block of runs and signal (runs/span_blocks.c) */
+    int32_t *known_spans;      /* by block, how many of them are known */
+    int32_t block_room;
     run **touched;             /* runs that did something in this call */
     int32_t *called;           /* scratch: ids of the runs that a call concerns */
     timers alarms;             /* timers, by id of the run */

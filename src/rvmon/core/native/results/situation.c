@@ -287,7 +287,7 @@ static void put_run(situation *s, run *r)
         for (i = 0; i < p->captured; i++) {
             put_number(s, &r->captured[i]);
         }
-        if (GAP(r) > 1) {
+        if ((GAP(r) > 1) && (r->parent == NULL)) { /* the run of an attempt captures nothing itself */
             put_captured(s, r);
         }
     }

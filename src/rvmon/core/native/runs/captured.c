@@ -289,6 +289,7 @@ void begin_captured(run *r, int32_t index, int64_t t, int64_t triggered)
 {
     const bool watched = r->part->judges[index].blurs >= 0;
     run *made = forked(r);
+    int32_t i;
     if (made == NULL) {
         return;
     }
@@ -317,6 +318,9 @@ void begin_captured(run *r, int32_t index, int64_t t, int64_t triggered)
     adopt(r, made);
     enlist(made, true);
     begin_here(made, index, t, triggered);
+    for (i = 0; !made->at.dense && (i < r->part->plan->signals.count); i++) {
+        learn_span(made, i); /* now, so that the next sample need not call this run for it */
+    }
     set_alarm(made, next_position(made));
     if (watched) {
         check_captured(made, t);

@@ -17,23 +17,6 @@ static void *resized(rv_monitor *m, void *old, int32_t room, size_t each)
     return enlarged(m, old, &same, (int64_t)room + 1, each);
 }
 
-/* Make room for the values and spans of signals of one more run, in a part that captures values. They
- * are side by side, so that a sample quickly finds the runs it concerns. False: memory is short. */
-static bool widen_values(home *h)
-{
-    const int32_t signals = h->part->plan->signals.count;
-    rv_number *values = resized(h->monitor, h->values, h->run_room, (size_t)(signals + 1) * sizeof *values);
-    span *spans = resized(h->monitor, h->spans, h->run_room, (size_t)(signals + 1) * sizeof *spans);
-    int32_t i;
-    h->values = (values != NULL) ? values : h->values;
-    h->spans = (spans != NULL) ? spans : h->spans;
-    for (i = 0; i < h->run_count; i++) {
-        h->runs[i]->value = &h->values[(size_t)i * (size_t)signals];
-        h->runs[i]->spans = &h->spans[(size_t)i * (size_t)signals];
-    }
-    return (values != NULL) && (spans != NULL);
-}
-
 /* Give a new run its id; false: memory is short. */
 bool register_run(home *h, run *r)
 {
@@ -86,6 +69,7 @@ static void put_touched(home *h, int32_t place, run *r)
 void touch_run(run *r)
 {
     home *h = r->home;
+    forget_spans(r);
     if (r->touched_at == 0) {
         put_touched(h, h->touched_count, r);
         h->touched_count++;
@@ -261,7 +245,7 @@ static bool may_be_held(const home *h, const incoming *in)
 }
 
 /* Add a run to `called` unless it is in it already. */
-static int32_t called_with(home *h, int32_t count, run *r)
+int32_t called_with(home *h, int32_t count, run *r)
 {
     if (r->call == h->call) {
         return count;
@@ -292,26 +276,6 @@ static int32_t called_instances(home *h, int32_t count)
     run *one;
     for (one = h->root; one != NULL; one = one->next) {
         found = called_with(h, found, one);
-    }
-    return found;
-}
-
-/* Add the runs in which a value of a signal may change a comparison; the others hold it. */
-static int32_t called_by_value(home *h, int32_t count, int32_t local, const rv_number *value)
-{
-    const size_t signals = (size_t)h->part->plan->signals.count;
-    rv_number *held = &h->values[local];
-    const span *spans = &h->spans[local];
-    int32_t found = count;
-    int32_t i;
-    for (i = 0; i < h->run_count; i++, held += signals, spans += signals) {
-        if (stays_in_span(spans, held, value)) {
-            *held = *value;
-        } else if (!h->runs[i]->is_spare) {
-            found = called_with(h, found, h->runs[i]);
-        } else {
-            /* It judges nothing. */
-        }
     }
     return found;
 }

@@ -111,8 +111,20 @@ void enlist(run *r, bool captured);
 void delist(run *r, bool captured);
 void set_alarms(home *h);
 int32_t call_due(home *h, int64_t t);
+int32_t called_with(home *h, int32_t count, run *r);
 int32_t call_affected(home *h, int64_t t);
 void for_called(home *h, int32_t count, int64_t t, void (*act)(run *r, int64_t t));
+
+/* ---- span_blocks.c: which runs a value concerns */
+struct block_span {
+    span within;               /* the interval in which no comparison of its runs changes */
+    rv_number value;           /* one in it */
+    bool known;
+};
+
+bool widen_values(home *h);
+void forget_spans(const run *r);
+int32_t called_by_value(home *h, int32_t count, int32_t local, const rv_number *value);
 
 /* ---- homes.c: a part with all its runs */
 bool home_begin(home *h);
