@@ -1,4 +1,4 @@
-"""The page of representations names functions and types that are there."""
+"""The page on the architecture names existing functions and their types."""
 
 import inspect
 import re
@@ -12,13 +12,12 @@ PAGE = (ROOT / "docs" / "explanation" / "architecture.md").read_text(encoding="u
 PASSES = re.findall(r"\| `(\S+)\.py`<br>`(\w+)` \| `(\w+)` →<br>`(\w+)` \|", PAGE)
 
 
-def test_every_row_is_read():
-    """No row of the table has a form that the next test would pass over."""
+def test_every_row_of_the_table_is_understood():
     assert len(PASSES) == PAGE.count("\n| ") - 1 > 10
 
 
 @pytest.mark.parametrize(("path", "function", "taken", "given"), PASSES)
-def test_a_pass_takes_and_gives_what_its_row_says(path, function, taken, given):
+def test_a_pass_has_the_types_of_its_row(path, function, taken, given):
     found = getattr(import_module(f"rvmon.{path.replace('/', '.')}"), function)
     signature = inspect.signature(found)
     parameters = " ".join(str(one.annotation) for one in signature.parameters.values())

@@ -1,4 +1,4 @@
-"""The cache folder: whose it is, what is kept in it, and for how long."""
+"""The cache folder: its owner, its content, and when entries are deleted."""
 
 import errno
 import os
@@ -18,8 +18,8 @@ ROOT = Path(__file__).parents[2]
 
 
 @pytest.mark.parametrize("why", ["it is switched off", "its place is a file"])
-def test_without_it_all_goes_on(own_cache, monkeypatch, why):
-    """Parsers, what is compiled, and plans are made anew."""
+def test_everything_works_without_a_cache(own_cache, monkeypatch, why):
+    """Parsers, compiled specifications and plans are made anew."""
     found = rvmon.load(ROOT / "examples" / "base.rv").evaluate(ROOT / "examples" / "base.csv")
     assert {path.name[:4] for path in own_cache.iterdir()} >= {"spec", "plan"}
     shutil.rmtree(own_cache)
@@ -37,7 +37,7 @@ def test_without_it_all_goes_on(own_cache, monkeypatch, why):
 
 @pytest.mark.skipif(not hasattr(os, "getuid"), reason="needs the rights of POSIX")
 def test_a_folder_that_others_can_write_to_is_not_used(own_cache):
-    """What is kept is data, but whose data?"""
+    """Someone else might have replaced the entries."""
     own_cache.mkdir(mode=0o700)
     own_cache.chmod(0o777)
     assert cache_folder() is None
@@ -45,35 +45,38 @@ def test_a_folder_that_others_can_write_to_is_not_used(own_cache):
     assert cache_folder() == own_cache
 
 
-def test_a_relative_place_is_ignored(own_cache, monkeypatch):
-    """The XDG specification says so: it would be another one in each folder."""
+def test_a_relative_path_in_the_environment_is_ignored(own_cache, monkeypatch):
+    """The XDG specification says so."""
     monkeypatch.setenv("HOME", str(own_cache.parent))
     monkeypatch.setenv("XDG_CACHE_HOME", "somewhere")
     assert cache_folder() == own_cache.parent / ".cache" / "rvmon"
 
 
-@pytest.mark.parametrize("said", ["1", "none"])
-def test_what_was_used_last_is_kept(own_cache, monkeypatch, said):
-    monkeypatch.setenv("RVMON_CACHE_MB", said)
-    place = cache_folder()
-    assert place is not None
+@pytest.fixture
+def place(own_cache):
+    """The cache folder, created."""
+    found = cache_folder()
+    assert found == own_cache
+    return found
+
+
+@pytest.mark.parametrize("limit", ["1", "none"])
+def test_recently_used_entries_stay_within_the_limit(place, monkeypatch, limit):
+    monkeypatch.setenv("RVMON_CACHE_MB", limit)
     paths = [place / f"spec-{number:040x}.json" for number in range(30)]
     for number, path in enumerate(paths):
         keep(path, bytes(100_000))
         os.utime(path, (number, number))
-        os.utime(place / "tidied", (0, 0))  # it is done from time to time
+        os.utime(place / "tidied", (0, 0))  # otherwise it would not be tidied again so soon
         assert read_kept(paths[0]) == bytes(100_000)
     left = [path.exists() for path in paths]
     assert left[0]
     assert left[-1]
-    assert all(left) == (said == "none")
+    assert all(left) == (limit == "none")
     assert sum(left) >= 5
 
 
-def test_what_killed_processes_left_is_deleted(own_cache):
-    """Unfinished files of long ago go; younger ones, and what is not ours, stay."""
-    place = cache_folder()
-    assert place is not None
+def test_old_unfinished_files_are_deleted_and_foreign_ones_kept(place):
     keep(place / f"spec-{1:040x}.json", b"x")
     old = place / ".rvmon-01234567.part"
     old.touch()
@@ -84,29 +87,24 @@ def test_what_killed_processes_left_is_deleted(own_cache):
     os.utime(place / "tidied", (0, 0))
     keep(place / f"spec-{2:040x}.json", b"x")
     names = {path.name for path in place.iterdir()}
-    assert {name for name in names if not name.startswith("spec-")} == {
-        ".rvmon-89abcdef.part",
-        "tidied",
-        "thesis.tex",
-    }
+    others = {name for name in names if not name.startswith("spec-")}
+    assert others == {".rvmon-89abcdef.part", "tidied", "thesis.tex"}
 
 
-def test_files_are_private_whatever_the_umask_says(own_cache):
-    known = os.umask(0)
+def test_files_are_private_whatever_the_umask(own_cache):
+    before = os.umask(0)
     try:
         place = cache_folder()
-        assert place is not None
+        assert place == own_cache
         keep(place / "spec-0.json", b"x")
     finally:
-        os.umask(known)
+        os.umask(before)
     modes = [stat.S_IMODE(path.stat().st_mode) for path in (place, place / "spec-0.json")]
     assert modes == [0o700, 0o600]
 
 
 @pytest.mark.parametrize("harm", ["cut", "flip", "others", "gone", "pipe", "folder"])
-def test_what_is_damaged_or_foreign_is_not_used(own_cache, harm):
-    place = cache_folder()
-    assert place is not None
+def test_damaged_or_foreign_entries_are_not_used(place, harm):
     path = place / "spec-0.json"
     keep(path, b"a body")
     assert read_kept(path) == b"a body"
@@ -123,8 +121,8 @@ def test_what_is_damaged_or_foreign_is_not_used(own_cache, harm):
     assert read_kept(path) is None
 
 
-def test_a_link_of_someone_else_is_not_followed(own_cache, monkeypatch):
-    """It is the link that someone else can change."""
+def test_a_symbolic_link_of_another_user_is_not_followed(own_cache, monkeypatch):
+    """Its owner can change where it leads."""
     own_cache.parent.joinpath("elsewhere").mkdir(mode=0o700)
     own_cache.symlink_to("elsewhere")
     assert cache_folder() == own_cache
@@ -149,18 +147,18 @@ print(rvmon.load(sys.argv[1]).evaluate(trace).to_json())
 
 
 def full(*_):
-    """What the system says when the disk is full."""
+    """Fail as on a full disk."""
     raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
 
 def opened(path, flags, *more, real=os.open, **where):
-    """The same for new files only."""
+    """Fail as on a full disk, but only for new files."""
     return full() if flags & os.O_CREAT else real(path, flags, *more, **where)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("call", "fails"), [("open", opened), ("replace", full)])
-def test_a_full_disk_costs_only_what_would_be_kept(own_cache, tmp_path, monkeypatch, call, fails):
+def test_a_full_disk_only_prevents_caching(own_cache, tmp_path, monkeypatch, call, fails):
     path = tmp_path / "a.rv"
     path.write_text(SPEC)
     with monkeypatch.context() as patch:
@@ -169,25 +167,25 @@ def test_a_full_disk_costs_only_what_would_be_kept(own_cache, tmp_path, monkeypa
         assert spec.evaluate(TRACE).verdicts == {"R": "P"}
     assert [*own_cache.iterdir()] == []
     rvmon.load(path)
-    assert any(one.name.startswith("spec-") for one in own_cache.iterdir())
+    assert [*own_cache.glob("spec-*")]
 
 
 @pytest.mark.process
-def test_two_processes_that_compile_the_same_at_once_keep_it_whole(own_cache, tmp_path):
+def test_two_processes_can_cache_the_same_specification_at_once(own_cache, tmp_path):
     path = tmp_path / "a.rv"
     path.write_text(SPEC)
     words = [sys.executable, "-c", COMPILE, str(path)]
     pipe = subprocess.PIPE
-    begun = [subprocess.Popen(words, stdin=pipe, stdout=pipe, text=True) for _ in range(2)]  # noqa: S603
-    for one in begun:
-        assert one.stdout.readline() == "ready\n"
-    for one in begun:
-        one.stdin.write("go\n")
-        one.stdin.flush()
-    told = [one.communicate()[0] for one in begun]
-    assert [one.returncode for one in begun] == [0, 0]
+    processes = [subprocess.Popen(words, stdin=pipe, stdout=pipe, text=True) for _ in range(2)]  # noqa: S603
+    for process in processes:
+        assert process.stdout.readline() == "ready\n"
+    for process in processes:
+        process.stdin.write("go\n")
+        process.stdin.flush()
+    told = [process.communicate()[0] for process in processes]
+    assert [process.returncode for process in processes] == [0, 0]
     assert told[0] == told[1]
     assert '"P"' in told[0]
-    assert not [one for one in own_cache.iterdir() if one.name.endswith(".part")]
-    [kept] = [one for one in own_cache.iterdir() if one.name.startswith("spec-")]
+    assert not [path for path in own_cache.iterdir() if path.name.endswith(".part")]
+    [kept] = own_cache.glob("spec-*")
     assert read_kept(kept) is not None

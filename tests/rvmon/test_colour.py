@@ -1,8 +1,9 @@
-"""Colours say severity and place, change no text, and are asked for by terminals only."""
+"""Colours mark severity and place, change no text, and are used on terminals only."""
 
 import io
 import re
 
+from tests.tools.each import each
 from tests.tools.findings import findings_of
 
 from rvmon.diagnostics import SEVERITIES, coloured, render_full, wants_colour
@@ -10,7 +11,7 @@ from rvmon.language.compile import compile_text
 
 
 class Terminal(io.StringIO):
-    """A stream that says it is a terminal."""
+    """A stream that claims to be a terminal."""
 
     def isatty(self):
         return True
@@ -22,25 +23,28 @@ def rendered():
     return render_full(findings_of(compile_text, text))
 
 
-def test_only_colours_are_added():
+def test_colouring_adds_nothing_but_colours():
     text = rendered()
     shown = coloured(text)
     assert re.sub(r"\x1b\[\d+m", "", shown) == text
     assert shown.count(SEVERITIES["error"]) >= 4  # headings and underlines
 
 
-def test_who_gets_colours(monkeypatch):
+@each(
+    ("environment", "of_terminal", "of_file"),
+    [
+        ({}, True, False),
+        ({"FORCE_COLOR": "1"}, True, True),
+        ({"FORCE_COLOR": "1", "NO_COLOR": "1"}, False, False),
+        ({"NO_COLOR": "1"}, False, False),
+        ({"TERM": "dumb"}, False, False),
+    ],
+)
+def test_terminal_and_environment_decide_about_colours(
+    monkeypatch, environment, of_terminal, of_file
+):
     for name in ("NO_COLOR", "FORCE_COLOR"):
         monkeypatch.delenv(name, raising=False)
-    monkeypatch.setenv("TERM", "xterm")
-    assert wants_colour(Terminal())
-    assert not wants_colour(io.StringIO())
-    monkeypatch.setenv("FORCE_COLOR", "1")
-    assert wants_colour(io.StringIO())
-    monkeypatch.setenv("NO_COLOR", "1")
-    assert not wants_colour(io.StringIO())
-    monkeypatch.delenv("FORCE_COLOR")
-    assert not wants_colour(Terminal())
-    monkeypatch.delenv("NO_COLOR")
-    monkeypatch.setenv("TERM", "dumb")
-    assert not wants_colour(Terminal())
+    for name, value in {"TERM": "xterm", **environment}.items():
+        monkeypatch.setenv(name, value)
+    assert (wants_colour(Terminal()), wants_colour(io.StringIO())) == (of_terminal, of_file)

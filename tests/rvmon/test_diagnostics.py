@@ -1,6 +1,8 @@
-"""Findings as full text, as lines and as JSON."""
+"""Findings as full text, as single lines and as JSON."""
 
 import json
+
+from tests.tools.each import each
 
 from rvmon.diagnostics import (
     Diagnostic,
@@ -27,7 +29,7 @@ FINDING = Diagnostic(
 BARE = Diagnostic("RV006", "too-many-findings", Severity.WARNING, "so much")
 
 
-def test_concise():
+def test_a_concise_finding_is_one_line_with_its_help():
     assert render_concise([FINDING, BARE]).splitlines() == [
         "specs/demo.rv:3:19: error[RV012 unknown-signal]: no signal or event named `relased`"
         " (help: did you mean `released`?)",
@@ -35,8 +37,8 @@ def test_concise():
     ]
 
 
-def test_json_has_all_in_a_line_for_each_finding():
-    """A pattern for lines finds the first place of each."""
+def test_json_has_a_line_for_each_finding():
+    """A program can match the first place of each finding line by line."""
     text = render_json([FINDING, BARE])
     first, second = json.loads(text)
     assert (first["code"], first["severity"], second["spans"]) == ("RV012", "error", [])
@@ -50,10 +52,8 @@ def test_json_has_all_in_a_line_for_each_finding():
 
 
 def test_nothing_steers_the_terminal():
-    source = Source("a\x1b[2J.rv", "\x1b[31m")
-    found = Diagnostic(
-        "RV001", "syntax", Severity.ERROR, "found `\x1b`", (Label(Span(source, 0, 5)),)
-    )
+    place = (Label(Span(Source("a\x1b[2J.rv", "\x1b[31m"), 0, 5)),)
+    found = Diagnostic("RV001", "syntax", Severity.ERROR, "found `\x1b`", place)
     for text in (render_full([found]), render_concise([found]), render_json([found])):
         assert "\x1b" not in text
 
@@ -64,17 +64,22 @@ def lines(text, start, end):
     return shown[2], shown[3]
 
 
-def test_places_at_the_edges():
-    assert lines("ab", 2, 2) == (" 1 | ab", "   |   ^")
-    assert lines("", 0, 0) == (" 1 |", "   | ^")
-    assert lines("ab\ncd\n", 1, 5) == (" 1 | ab", "   |  ^")
-    assert lines("ab\n", 3, 3) == (" 2 |", "   | ^")
-
-
-def test_wide_and_unprintable_characters():
-    assert lines("数 x", 2, 3) == (" 1 | 数 x", "   |    ^")
-    assert lines("\x00\x1b x", 3, 4) == (r" 1 | \x00\x1b x", "   |          ^")
-    assert lines("a\r\nb", 0, 1) == (" 1 | a", "   | ^")
+@each(
+    ("text", "start", "end", "line", "underline"),
+    [
+        # Places at the edges of lines and of the text.
+        ("ab", 2, 2, " 1 | ab", "   |   ^"),
+        ("", 0, 0, " 1 |", "   | ^"),
+        ("ab\ncd\n", 1, 5, " 1 | ab", "   |  ^"),
+        ("ab\n", 3, 3, " 2 |", "   | ^"),
+        # Wide and unprintable characters.
+        ("数 x", 2, 3, " 1 | 数 x", "   |    ^"),
+        ("\x00\x1b x", 3, 4, r" 1 | \x00\x1b x", "   |          ^"),
+        ("a\r\nb", 0, 1, " 1 | a", "   | ^"),
+    ],
+)
+def test_a_place_is_underlined(text, start, end, line, underline):
+    assert lines(text, start, end) == (line, underline)
 
 
 def test_long_lines_are_cut_around_the_place():

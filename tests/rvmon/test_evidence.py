@@ -1,4 +1,4 @@
-"""Archives of evidence: every byte counts, and a hostile one is refused."""
+"""Archives of evidence: every changed byte is found, and hostile archives are refused."""
 
 import io
 import random
@@ -16,7 +16,7 @@ ENTRIES = {"verdicts.csv": b"R1,P\n", "spec/a.rv": "requirement é\n".encode(), 
 
 @pytest.fixture
 def file(tmp_path):
-    """Writes bytes to a file."""
+    """Write bytes to a file and return its path."""
 
     def written(data):
         path = tmp_path / "e.zip"
@@ -27,7 +27,7 @@ def file(tmp_path):
 
 
 def zipped(entries, compression=zipfile.ZIP_STORED):
-    """A zip file that somebody else wrote."""
+    """A zip file written by another program."""
     made = io.BytesIO()
     with zipfile.ZipFile(made, "w", compression) as packed:
         for name, body in entries:
@@ -35,8 +35,8 @@ def zipped(entries, compression=zipfile.ZIP_STORED):
     return made.getvalue()
 
 
-def test_it_comes_back_as_it_was(file):
-    """Whatever the order in which entries are given; `sha256sum --check` can read the sums."""
+def test_entries_are_read_back_whatever_their_order(file):
+    """`sha256sum --check` can read the sums."""
     data = pack(ENTRIES)
     assert data == pack(dict(reversed(ENTRIES.items())))
     assert unpack(file(data)) == ENTRIES
@@ -46,7 +46,7 @@ def test_it_comes_back_as_it_was(file):
 
 
 @pytest.mark.slow
-def test_every_byte_counts(file):
+def test_a_change_of_any_byte_is_found(file):
     data = pack({"é": b"1"})
     draw = random.Random(1)
     for place in range(len(data)):
@@ -56,7 +56,7 @@ def test_every_byte_counts(file):
             unpack(file(bytes(other)))
 
 
-def test_what_was_changed_is_named_and_nothing_hides_beside_the_entries(file):
+def test_a_changed_entry_is_named_and_hidden_bytes_are_refused(file):
     data = pack(ENTRIES)
     sums = zipfile.ZipFile(io.BytesIO(data)).read("SHA256SUMS")
     for name, entries in {
@@ -79,32 +79,34 @@ def overlapping():
         first = packed.infolist()[0]
         index = data[packed.start_dir : -22]
     size = len(index) // 3
-    one = bytearray(index[:size])
-    assert struct.unpack_from("<I", one, 42) == (first.header_offset,)
-    many = b"".join(bytes(one[:46]) + b"%04d" % number + bytes(one[50:]) for number in range(999))
-    end = struct.pack(
-        "<4s4H2LH", b"PK\5\6", 0, 0, 999, 999, len(many), len(data) - 22 - len(index), 0
-    )
-    return data[: -22 - len(index)] + many + end
+    entry = index[:size]
+    assert struct.unpack_from("<I", entry, 42) == (first.header_offset,)
+    many = b"".join(entry[:46] + b"%04d" % number + entry[50:] for number in range(999))
+    start = len(data) - 22 - len(index)
+    end = struct.pack("<4s4H2LH", b"PK\5\6", 0, 0, 999, 999, len(many), start, 0)
+    return data[:start] + many + end
+
+
+ODD = "compressed, doubled or overlap"
 
 
 @pytest.mark.parametrize(
     ("data", "told"),
     [
-        (zipped([("a", b"0" * 1_000_000)], zipfile.ZIP_DEFLATED), "compressed, doubled or overlap"),
-        (zipped([("a", b"1"), ("b", b"2")]).replace(b"b", b"a"), "compressed, doubled or overlap"),
-        (overlapping(), "compressed, doubled or overlap"),
-        (b"", "no evidence"),
-        (b"PK\5\6" + b"\xff" * 18, "no evidence"),
-        (pack(ENTRIES)[:-30], "no evidence"),
+        pytest.param(zipped([("a", b"0" * 10**6)], zipfile.ZIP_DEFLATED), ODD, id="compressed"),
+        pytest.param(zipped([("a", b"1"), ("b", b"2")]).replace(b"b", b"a"), ODD, id="doubled"),
+        pytest.param(overlapping(), ODD, id="overlapping"),
+        pytest.param(b"", "or is damaged", id="empty"),
+        pytest.param(b"PK\5\6" + b"\xff" * 18, "or is damaged", id="no entries"),
+        pytest.param(pack(ENTRIES)[:-30], "or is damaged", id="cut"),
     ],
 )
-def test_a_hostile_one_is_refused(file, data, told):
+def test_a_hostile_archive_is_refused(file, data, told):
     with pytest.raises(RvmonError, match=told):
         unpack(file(data))
 
 
-def test_one_that_is_too_large_is_not_read(file, monkeypatch):
+def test_an_archive_that_is_too_large_is_not_read(file, monkeypatch):
     data = pack(ENTRIES)
     monkeypatch.setattr(keep, "MOST_BYTES", 100)
     with pytest.raises(RvmonError, match="larger than"):

@@ -1,7 +1,7 @@
-"""Hostile names and cells through every output, each parsed again: nothing is forged or obeyed.
+"""Hostile names in every output, which is parsed again: nothing is forged or interpreted.
 
-Every writer gets names as ids, texts, columns, reasons and names of files; commands get them in
-specifications, models and recordings. `HOSTILE_NAMES=100000` in the environment tries so many.
+Every writer gets names as ids, texts, columns, reasons and file names; commands get them in
+specifications, models and recordings. `HOSTILE_NAMES=100000` in the environment tries that many.
 """
 
 import contextlib
@@ -63,10 +63,10 @@ query q: A[] not deadlock
 
 
 class Documents:
-    """What each writer makes of names.
+    """The output of each writer for hostile names, with a check of it.
 
     Args:
-        names: at most some thousands.
+        names: at most a few thousand.
     """
 
     def __init__(self, names: Names) -> None:
@@ -99,7 +99,7 @@ class Documents:
         return _calm(text) and cases == ids + ["recording"] * len(ids)
 
     def csv(self) -> bool:
-        """Tables as CSV, of which no cell is a formula."""
+        """Tables as CSV in which no cell is a formula."""
         rows = list(csv.reader(io.StringIO(tables_csv({self.names[0]: self.table}), newline="")))
         ids = [row[2] for row in rows[1 : len(self.names) + 1]]
         texts = [shown_line(name) for name in self.names]
@@ -107,18 +107,18 @@ class Documents:
         return not formulas and ids == [f"'{one}" if one[0] in "=+-@" else one for one in texts]
 
     def latex(self) -> bool:
-        """Tables as LaTeX: a name is escapes and harmless signs, a row has its cells."""
+        """Tables as LaTeX: names consist of escapes and harmless signs, rows are complete."""
         rows = [line for line in table_latex(self.table).split("\n") if line.endswith(r" \\")]
         ids = [row.split(" & 1")[0] for row in rows[2:]]
         return len(ids) == len(self.names) and not any(_LATEX.sub("", text) for text in ids)
 
     def html(self) -> bool:
-        """Pages: the tags, and the names of their attributes, are those of harmless names."""
+        """Pages with the tags and attribute names that harmless names give."""
         text, harmless = self._html_page(), Documents(_harmless(self.names))._html_page()
         return _calm(text) and _outline(text) == _outline(harmless)
 
     def script_data(self) -> bool:
-        """Data for the script of a page: it reads back as what the page shows."""
+        """Data for the script of a page, equal to the shown names when read back."""
         text = data({"panels": {name: [name] for name in self.names}})
         return (
             "<" not in text
@@ -146,14 +146,14 @@ class Documents:
         return _calm(text) and found == [shown(name) for name in self.names]
 
     def messages(self) -> bool:
-        """Errors, and findings in all their forms."""
+        """Errors, and findings in all formats."""
         found = [
             Diagnostic("RV001", "syntax", Severity.ERROR, n, (Label(Span(Source(n, n), 0, 2), n),))
             for n in self.names
         ]
         errors = [str(kind(name)) for kind in (RvmonError, UnknownNameError) for name in self.names]
         texts = [render_full(found), render_concise(found), shown_json(render_json(found)), *errors]
-        read = [one["file"] for one in json.loads(texts[2])]
+        read = [finding["file"] for finding in json.loads(texts[2])]
         lines = len(texts[1].split("\n"))
         return _calm("".join(texts)) and read == list(self.names) and lines == len(self.names)
 
@@ -191,7 +191,7 @@ def _calm(text: str) -> bool:
 
 
 def _printed(act: Callable[[], object]) -> str:
-    """What goes to standard output and error."""
+    """The text on standard output and error."""
     told = io.StringIO()
     with contextlib.redirect_stdout(told), contextlib.redirect_stderr(told):
         act()
@@ -199,14 +199,14 @@ def _printed(act: Callable[[], object]) -> str:
 
 
 def written(names: Names, folder: Path) -> tuple[Names, str, str, str, str]:
-    """Files in which names stand wherever a file can have them, also in what it is called.
+    """Write files with hostile names wherever possible, including the file name.
 
     Returns:
-        The names, each the id and the text of a requirement; the specification; a recording that it
-        judges, with a column and cells that are names; one with a value that is a name; a network
-        of timed automata with names as its title and the remark of each query.
+        The names, each the id and text of a requirement, and the paths of the specification, of a
+        recording with names as a column and cells, of one with a name as a value, and of a network
+        of timed automata with names as title, labels and remarks of queries.
     """
-    ids = [name for name in names if "\r" not in name]  # files end lines there
+    ids = [name for name in names if "\r" not in name]  # it would end a line
     cell = next(name for name in ids if name == shown_line(name) or "\x00" not in name)
     file = re.sub(r"[/\x00]", "_", ids[-1])[:60]
     ends = (".rv", ".csv", ".broken.csv", ".ta")
@@ -216,7 +216,7 @@ def written(names: Names, folder: Path) -> tuple[Names, str, str, str, str]:
     for path, value in ((trace, "0"), (broken, cell)):
         with open(path, "w", newline="", encoding="utf-8") as out:
             csv.writer(out).writerows([("t", "b", ids[0]), (0, 1, cell), (1, value, cell)])
-    # The first is a column whose cells are no truth values.
+    # The first name is left out: it is a column whose cells are no truth values.
     quoted_ids = [f'"{name}"' for name in ids[1:] if '"' not in name and name != ids[0]]
     queries = "".join(f"query q{k} {name}: E<> A.m\n" for k, name in enumerate(quoted_ids[:20]))
     edges = "".join(f"  edge l -> m as {name}\n" for name in ("b", *quoted_ids[:20]))
@@ -227,7 +227,7 @@ def written(names: Names, folder: Path) -> tuple[Names, str, str, str, str]:
 
 
 def through_commands(names: Names, folder: Path) -> Iterator[tuple[str, bool]]:
-    """What commands make of names, each with whether all is well."""
+    """The names of commands, each with whether its output is harmless."""
     ids, spec, trace, broken, model = written(names, folder)
     run = ["run", spec, trace]
     words = {
@@ -266,7 +266,7 @@ def through_commands(names: Names, folder: Path) -> Iterator[tuple[str, bool]]:
 
 
 def _holds(name: str, text: str, ids: Names) -> bool:
-    """Whether what a command printed for programs reads back as the names."""
+    """Whether JSON output of a command reads back as the names."""
     if not name.endswith(", json"):
         return True
     try:
@@ -277,23 +277,22 @@ def _holds(name: str, text: str, ids: Names) -> bool:
         case "run":
             return list(document["requirements"]) == list(ids)
         case "export":
-            return [one["requirement"] for one in document] == list(ids)
+            return [automaton["requirement"] for automaton in document] == list(ids)
     return True
 
 
 @pytest.fixture(scope="module")
 def documents() -> list[Documents]:
-    """What is made of names."""
     names = [*hostile_names(NAMES)]
     return [Documents(names[first : first + BATCH]) for first in range(0, NAMES, BATCH)]
 
 
 @pytest.mark.parametrize("writer", WRITERS, ids=lambda writer: writer.__name__)
-def test_what_is_written_reads_back_as_names(documents, writer):
+def test_written_names_are_harmless_and_read_back(documents, writer):
     assert all(map(writer, documents))
 
 
-def test_every_command_shows_names_and_obeys_none(tmp_path):
+def test_every_command_prints_hostile_names_harmlessly(tmp_path):
     names = [*hostile_names(NAMES)]
     for first in range(0, NAMES, BATCH):
         found = dict(through_commands(names[first : first + BATCH], tmp_path))

@@ -1,4 +1,4 @@
-"""What the facade says when it is used in a wrong way: an error of rvmon, never a raw one."""
+"""Wrong use of the Python interface raises an error of rvmon with cause and fix."""
 
 import functools
 import re
@@ -33,18 +33,15 @@ def spec():
     "stamps",
     [np.array([0.2, 1.9]), np.array([0.0, np.nan]), [0, "1"], [0, None], [False, True], [0, 2e30]],
 )
-def test_ticks_are_whole_numbers(spec, stamps):
+def test_stamps_that_are_no_whole_number_of_ticks_are_refused(spec, stamps):
     with pytest.raises(TraceError, match=r"whole number of nanoseconds|out of range"):
         spec.evaluate({"t_ns": stamps, "gap": np.array([1.0, 5.0])}, time="t_ns", only=["D2"])
 
 
-def test_whole_floats_are_ticks(spec):
+def test_whole_floats_are_ticks_and_numpy_numbers_seconds(spec):
     table = {"t_ns": np.array([0.0, 2.0]), "gap": np.array([1.0, 5.0])}
     [attempt] = spec.evaluate(table, time="t_ns", only=["D2"]).attempts
     assert (attempt.verdict.value, attempt.decided) == ("F", 2)
-
-
-def test_numpy_numbers_are_seconds(spec):
     monitor = spec.monitor(only=["D2"])
     monitor.step(np.float32(0.5), {"gap": np.float32(1)})
     [attempt] = monitor.step(np.int64(100_000_000), {"gap": 5.0})
@@ -64,7 +61,7 @@ def test_numpy_numbers_are_seconds(spec):
         (2, None, "expected values by name, found None"),
     ],
 )
-def test_a_wrong_sample_is_told(spec, t, values, message):
+def test_a_wrong_sample_is_refused(spec, t, values, message):
     monitor = spec.monitor()
     for _ in range(2):
         with pytest.raises(TraceError, match=message):
@@ -73,9 +70,9 @@ def test_a_wrong_sample_is_told(spec, t, values, message):
         monitor.step(0, {"gap": 1.0})
 
 
-@pytest.mark.parametrize("one", [1, 1.0, np.int8(1), np.True_])
-def test_a_monitor_takes_the_values_that_recordings_may_have(spec, one):
-    samples = [(0, {"closed": one, "knock": one, "gap": 1}), (5, {"closed": 1 - int(one)})]
+@each("true", [1, 1.0, np.int8(1), np.True_])
+def test_a_monitor_takes_the_same_values_as_recordings(spec, true):
+    samples = [(0, {"closed": true, "knock": true, "gap": 1}), (5, {"closed": 1 - int(true)})]
     monitor = spec.monitor()
     told = [attempt.decided for t, values in samples for attempt in monitor.step(t, values)]
     report = monitor.finish()
@@ -84,12 +81,12 @@ def test_a_monitor_takes_the_values_that_recordings_may_have(spec, one):
 
 
 @each("trace", [None, 5, [5], [(None, {})], [(0, 5)], [(0,)]])
-def test_a_wrong_trace_is_told(spec, trace):
+def test_a_wrong_trace_is_refused(spec, trace):
     with pytest.raises(TraceError, match=r"expected|not a finite number"):
         spec.evaluate(trace)
 
 
-def test_no_requirement_is_judged(spec):
+def test_an_empty_choice_of_requirements_gives_an_empty_report(spec):
     arrays = {"t": np.array([0.0, 2.0]), "gap": np.array([1.0, 5.0])}
     for trace in (arrays, [(0, {"gap": 1.0}), (2, {"gap": 5.0})]):
         report = spec.evaluate(trace, only=[])
@@ -109,7 +106,7 @@ def test_ticks_given_online_are_whole_numbers(spec, wrong):
 
 
 def test_a_recording_is_no_specification(tmp_path):
-    """Files that were named in the wrong order are told apart by their names."""
+    """Its file name shows that arguments were swapped."""
     path = tmp_path / "monday.csv"
     path.write_text("t,x\n0,1\n")
     with pytest.raises(rvmon.SpecError, match=r"monday.csv: a recording by its name"):
@@ -126,17 +123,17 @@ ONE_TEXT = "expected names, such as ['{}'], found one text"
     [
         (lambda spec: spec.robustness(ONE, only=["Z"]), UnknownNameError, UNKNOWN),
         (lambda spec: spec.evaluate(ONE, only=["Z"]), UnknownNameError, UNKNOWN),
-        # A report is asked of what it has: a misspelt name has no attempts either.
+        # A misspelt name would have no attempts.
         (lambda spec: spec.evaluate(ONE).of("Z", "F"), UnknownNameError, UNKNOWN),
         (lambda spec: spec.evaluate(ONE).of("D2", "NT"), UnknownNameError, "the verdict 'NT'"),
-        # A source that the specification does not know is most likely a typing error.
+        # An undeclared source is most likely a typing error.
         (
             lambda spec: spec.monitor(sources=["gap", "zzz"]),
             UnknownNameError,
             "`zzz`: there are closed, gap, knock",
         ),
         (lambda spec: spec.restore("abc"), SnapshotError, "bytes of a snapshot, found str"),
-        # The letters of one text are not looked for one by one.
+        # A text is not taken for a list of its letters.
         (lambda spec: spec.monitor(sources="gap"), RvmonError, ONE_TEXT.format("gap")),
         (lambda spec: spec.evaluate([], sources="gap"), RvmonError, ONE_TEXT.format("gap")),
         (lambda spec: spec.evaluate([], only="D1"), RvmonError, ONE_TEXT.format("D1")),
@@ -146,7 +143,7 @@ ONE_TEXT = "expected names, such as ['{}'], found one text"
             RvmonError,
             "columns='gap=g': expected columns by name",
         ),
-        # A specification is text, and so are its constants.
+        # Specifications and constants are text.
         (
             lambda _: rvmon.loads(b"spec door"),
             RvmonError,
@@ -160,24 +157,23 @@ ONE_TEXT = "expected names, such as ['{}'], found one text"
         ),
     ],
 )
-def test_a_wrong_call_is_told(spec, wrong, error, message):
+def test_a_wrong_call_is_refused(spec, wrong, error, message):
     with pytest.raises(error, match=re.escape(message)):
         wrong(spec)
 
 
-def test_what_is_known_is_answered(spec):
+def test_attempts_of_a_known_name_and_verdict_are_found(spec):
     assert not spec.monitor(sources=["gap"]).step(0, {"gap": 1.0})
     [failed] = spec.evaluate(ONE).of("D2", rvmon.Verdict.FAIL)
     assert failed.name == "D2#1"
 
 
 async def _awaited(_):
-    """Of what is only awaited nothing would happen."""
+    """A coroutine, which nobody would await."""
 
 
 @pytest.mark.parametrize("callback", [_awaited, functools.partial(_awaited), 5])
-def test_a_callback_is_a_plain_function(spec, callback):
-    """An alarm that nobody awaits would never be heard."""
+def test_a_callback_must_be_a_plain_function(spec, callback):
     for registered in (
         spec.monitor().on_failure,
         spec.monitor().on_decided,

@@ -1,4 +1,4 @@
-"""The public surface: names, lightness, the facade."""
+"""The public interface: exported names, and which modules an import loads."""
 
 import ast
 import os
@@ -14,7 +14,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def test_exported_names_are_pinned():
-    """Others rely on these names; adding one is a decision, losing one a break."""
+    """Users rely on these names: removing one breaks them, adding one is a decision."""
     assert rvmon.__all__ == [
         "Attempt",
         "Diagnostic",
@@ -31,19 +31,16 @@ def test_exported_names_are_pinned():
         "load",
         "loads",
     ]
-    assert dir(rvmon) == rvmon.__all__  # what completion offers
+    assert dir(rvmon) == rvmon.__all__  # for completion
     for name in rvmon.__all__:
         assert getattr(rvmon, name) is not None
-
-
-def test_an_unknown_name_is_an_attribute_error():
     with pytest.raises(AttributeError, match="lood"):
         rvmon.lood  # noqa: B018
 
 
 def loaded(names, code, *words, **environment):
-    """Which of some modules a program of its own has loaded at its end."""
-    program = f"import sys; {code}; print([one for one in {names!r} if one in sys.modules])"
+    """The modules among `names` that a new process has loaded after some code."""
+    program = f"import sys; {code}; print([name for name in {names!r} if name in sys.modules])"
     shown = subprocess.run(  # noqa: S603 - the interpreter itself
         [sys.executable, "-c", program, *words],
         capture_output=True,
@@ -60,8 +57,7 @@ def test_import_loads_nothing_heavy():
 
 
 @pytest.mark.process
-def test_help_loads_nothing_that_reads_or_judges():
-    """Only a run of a command does."""
+def test_help_loads_nothing_that_reads_or_evaluates():
     heavy = (
         *("numpy", "sqlite3", "msgspec", "rich", "rvmon.analysis", "rvmon.language"),
         *("rvmon.monitor", "rvmon.recordings", "rvmon.session"),
@@ -71,8 +67,8 @@ def test_help_loads_nothing_that_reads_or_judges():
 
 
 @pytest.mark.process
-def test_a_run_loads_what_it_needs(tmp_path):
-    """From the second run on no grammar; nothing that it was not asked for."""
+def test_a_run_loads_only_what_it_needs(tmp_path):
+    """The parser generator is loaded only without a cached specification."""
     spec, trace = (str(ROOT / "examples" / name) for name in ("base.rv", "base.csv"))
     heavy = ("lark", "numpy.ma", "rich", "rvmon.monitor.robustness", "rvmon.recordings.binding")
     code = "from rvmon.cli import main; main(sys.argv[1:])"

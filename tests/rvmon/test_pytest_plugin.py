@@ -1,4 +1,4 @@
-"""The plugin of pytest, in a pytest of its own."""
+"""The plugin for pytest, in a separate pytest."""
 
 import pytest
 from tests import WITHOUT
@@ -18,7 +18,7 @@ requirement D2
 
 @pytest.fixture
 def folder(pytester, monkeypatch):
-    """A folder with a specification, and the plugins that the tests of ours run with."""
+    """A folder with a specification, for a pytest with few plugins."""
     monkeypatch.setenv("PYTEST_ADDOPTS", WITHOUT)
     pytester.makefile(".rv", door=SPEC)
     return pytester
@@ -30,8 +30,7 @@ def _run(folder, test, *words):
 
 
 @pytest.mark.process
-def test_requirements_fail_their_test_unless_their_verdict_is_wanted(folder):
-    """With the explanation; recordings are checked alike."""
+def test_an_unexpected_verdict_fails_the_test_with_an_explanation(folder):
     (folder.path / "run.csv").write_text("t,closed,knock\n0,1,1\n3,,\n")
     told = _run(
         folder,
@@ -60,14 +59,8 @@ def test_requirements_fail_their_test_unless_their_verdict_is_wanted(folder):
         """,
     )
     told.assert_outcomes(failed=4, passed=2)
-    told.stdout.fnmatch_lines(
-        [
-            "*not as expected: D1*",
-            "*had to become false between 0 s and 2 s*",
-            "*then within 2 s*",
-            "*not as expected: D2*",
-        ]
-    )
+    why = ["*had to become false between 0 s and 2 s*", "*then within 2 s*"]
+    told.stdout.fnmatch_lines(["*not as expected: D1*", *why, "*not as expected: D2*"])
     told.stdout.no_fnmatch_line("*pytest_plugin.py:*")
     told.stdout.fnmatch_lines(["*not as expected: D1*", "*its own*", "*not as expected: D1*"])
     told.stdout.re_match_lines([r".* requirements .*", r" +P +F +NT +I", r"D1 +1 +2"])
@@ -86,7 +79,7 @@ def test_specifications_are_tests_of_recordings(folder):
 
 
 @pytest.mark.process
-def test_wrong_specifications_and_recordings_are_told(folder):
+def test_wrong_specifications_recordings_and_verdicts_are_reported(folder):
     folder.makefile(".csv", run="t,closed\n0,maybe\n")
     folder.makeini("[pytest]\nrv_recordings = *.csv\n")
     (folder.path / "bad.rv").write_text("requirement")
@@ -116,8 +109,7 @@ def test_wrong_specifications_and_recordings_are_told(folder):
 
 
 @pytest.mark.process
-def test_without_settings_specifications_are_no_tests(folder):
-    """A project that has some is as it was; nothing is imported for it."""
+def test_without_settings_specifications_are_no_tests_and_nothing_is_imported(folder):
     folder.makepyfile(
         "def test_light():\n    import sys\n    assert 'rvmon.session' not in sys.modules"
     )

@@ -1,4 +1,4 @@
-"""A specification is shared by threads, tasks and processes; a monitor is put away by name."""
+"""Threads and processes share a specification; a monitor cannot be pickled or copied."""
 
 import copy
 import multiprocessing
@@ -56,7 +56,7 @@ def _evaluated(spec: rvmon.Spec, path: Path) -> str:
 @pytest.mark.usefixtures("quick_turns")
 @pytest.mark.parametrize("way", ["stepped", "evaluated"])
 def test_eight_threads_share_a_new_specification(trace: Path, way: str) -> None:
-    """What is worked out late is worked out alike, whoever asks first."""
+    """Values computed on first use are the same whichever thread is first."""
     barrier = Barrier(8)
 
     def judge(spec: rvmon.Spec) -> str:
@@ -75,7 +75,7 @@ def test_eight_threads_share_a_new_specification(trace: Path, way: str) -> None:
 
 @pytest.mark.parametrize("method", ["fork", "spawn"])
 @pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
-def test_a_used_specification_goes_to_other_processes(method: str, trace: Path) -> None:
+def test_a_used_specification_can_be_sent_to_other_processes(method: str, trace: Path) -> None:
     if method not in multiprocessing.get_all_start_methods():
         pytest.skip(f"there is no {method} here")
     spec = rvmon.loads(_SPEC)

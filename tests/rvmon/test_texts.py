@@ -1,4 +1,4 @@
-"""What others wrote, for people to read."""
+"""Texts from files, made safe to show, and percentages."""
 
 import json
 
@@ -11,7 +11,7 @@ from rvmon.texts import percent, percent_text, shown, shown_json, shown_line
 
 
 @pytest.mark.slow
-def test_nothing_that_steers_is_left():
+def test_no_control_character_is_left():
     for name in hostile_names(5000):
         assert not STEERING.search(shown(f"{name}\n"))
         assert "\n" not in shown_line(f"{name}\n")
@@ -20,8 +20,7 @@ def test_nothing_that_steers_is_left():
             assert json.loads(shown_json(text)) == name
 
 
-def test_what_prints_or_was_shown_stays():
-    """Letters of all scripts, and every kind of space; to show twice is to show once."""
+def test_printable_text_of_any_script_and_shown_text_stay_unchanged():
     text = "Größe 3\u00a0m: 名前\u3000🤖\n"
     assert shown(text) == text
     for name in hostile_names(1000):
@@ -31,23 +30,17 @@ def test_what_prints_or_was_shown_stays():
 @pytest.mark.slow
 @settings(deadline=None)
 @given(st.integers(1, 10**9), st.data())
-def test_nought_and_hundred_are_exact(whole, data):
+def test_only_none_is_0_percent_and_only_all_is_100_percent(whole, data):
     part = data.draw(st.integers(0, whole))
     assert (percent(part, whole) == 0) == (part == 0)
     assert (percent(part, whole) == 100) == (part == whole)
     assert (percent_text(part, whole) == "0 %") == (part == 0)
     assert (percent_text(part, whole) == "100 %") == (part == whole)
 
-
-@pytest.mark.slow
-@settings(deadline=None)
-@given(st.integers(1, 10**6), st.data())
-def test_a_percentage_is_close(whole, data):
-    """It is never off by more than what keeps it from 0 and 100."""
-    part = data.draw(st.integers(0, whole))
+    # Off by no more than it takes to keep apart from 0 and 100.
     assert abs(percent(part, whole) - 100 * part / whole) <= 0.1
 
 
-def test_of_nothing_all_is_covered():
+def test_no_items_are_all_covered():
     assert percent(0, 0) == 100
     assert percent_text(0, 0) == "100 %"

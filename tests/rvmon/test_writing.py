@@ -1,4 +1,4 @@
-"""Files are written whole, and nothing is lost where they cannot be."""
+"""Files are written completely or stay as they were."""
 
 import errno
 import os
@@ -18,11 +18,11 @@ def test_a_file_that_cannot_be_finished_stays_as_it_was(tmp_path, monkeypatch):
     monkeypatch.setattr(os, "replace", full)
     with pytest.raises(OSError, match="No space left"):
         write_whole(path, "after")
-    assert [one.name for one in tmp_path.iterdir()] == ["a.rv"]
+    assert [*tmp_path.iterdir()] == [path]
     assert path.read_text() == "before"
 
 
-def test_rights_and_links_stay(tmp_path):
+def test_permissions_and_links_are_kept(tmp_path):
     path, link, twin = tmp_path / "a", tmp_path / "link", tmp_path / "twin"
     path.write_text("before")
     path.chmod(0o751)
@@ -35,8 +35,8 @@ def test_rights_and_links_stay(tmp_path):
     assert twin.read_text() == "last"
 
 
-def test_what_is_no_file_is_written_to(tmp_path):
-    """A pipe stays one; it is our own, as a device would be lost if this were wrong."""
+def test_a_pipe_is_written_to_and_not_replaced(tmp_path):
+    """As a device would be."""
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
     reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
@@ -48,10 +48,10 @@ def test_what_is_no_file_is_written_to(tmp_path):
         write_whole(tmp_path, "text")
 
 
-def test_a_new_file_has_the_rights_of_new_files(tmp_path):
-    known = os.umask(0o027)
+def test_a_new_file_has_the_permissions_of_the_umask(tmp_path):
+    before = os.umask(0o027)
     try:
         write_whole(tmp_path / "a", "text")
     finally:
-        os.umask(known)
+        os.umask(before)
     assert stat.S_IMODE((tmp_path / "a").stat().st_mode) == 0o640
