@@ -63,7 +63,7 @@ class DdsSource:
         self._writer: Any = None
         self._readers: dict[str, tuple[Any, Topic]] = {}
         self._types: dict[str, str] = {}  # by topic, its type in DDS as first published
-        self._found: set[str] = set()  # discovered topics without a reader yet
+        self._pending: set[str] = set()  # discovered topics without a reader yet
         self._given_up: set[str] = set()
         self._losses: dict[str, int] = {}  # by topic, losses since its queue was last emptied
         self._lock = Lock()
@@ -156,9 +156,9 @@ class DdsSource:
             if (known := self._types.setdefault(name, one.type_name)) != one.type_name:
                 self._give_up(name, f"it has two types, {known} and {one.type_name}")
             elif name not in self._readers:
-                self._found.add(name)
-        ready = {one for one in self._found if self._feed.has_time or self._wanted[one] == CLOCK}
-        self._found -= ready
+                self._pending.add(name)
+        ready = {one for one in self._pending if self._feed.has_time or self._wanted[one] == CLOCK}
+        self._pending -= ready
         for name in ready:
             try:
                 self._subscribe(name, self._types[name])

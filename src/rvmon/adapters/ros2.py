@@ -51,7 +51,7 @@ class Ros2Source:
         self._feed = feed
         self._verdicts = verdicts
         self._publisher: Any = None
-        self._found: dict[str, set[str]] = {}  # by discovered topic, its types
+        self._discovered: dict[str, set[str]] = {}  # by discovered topic, its types
 
     def __enter__(self) -> Ros2Source:
         """Start the node in its own thread, with an rclpy context apart from the program's."""
@@ -87,14 +87,14 @@ class Ros2Source:
         """Subscribe to the wanted topics that are published."""
         wanted = {*self._feed.topics()} if self._feed.has_time else {CLOCK}
         for name, types in self._node.get_topic_names_and_types():
-            if name not in wanted or (known := self._found.get(name, set())) >= {*types}:
+            if name not in wanted or (known := self._discovered.get(name, set())) >= {*types}:
                 continue
             publishers = self._node.get_publishers_info_by_topic(name)
             if not publishers:
                 continue
-            self._found[name] = known | {*types}
-            if len(self._found[name]) > 1:
-                several = ", ".join(sorted(self._found[name]))
+            self._discovered[name] = known | {*types}
+            if len(self._discovered[name]) > 1:
+                several = ", ".join(sorted(self._discovered[name]))
                 self._feed.lose(name, f"it has several types, {several}", for_good=True)
             else:
                 self._subscribe(name, types[0], [publisher.qos_profile for publisher in publishers])

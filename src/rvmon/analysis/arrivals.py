@@ -35,7 +35,7 @@ class Arrivals:
 
     def __init__(self, spec: CheckedSpec, names: frozenset[str] | None) -> None:
         # by attempt, the instant of the response, ticks; `None` if it has not come so far
-        self.found: dict[Key, int | None] = {}
+        self.arrived: dict[Key, int | None] = {}
         self._spec = spec
         self._names = names
         # by requirement and text of the awaiting subformula, the text of the awaited one
@@ -66,12 +66,12 @@ class Arrivals:
         key = attempt.requirement, attempt.number
         text = self._awaited[attempt.requirement].get(missed(attempt))
         if text is None:
-            self.found[key] = None
+            self.arrived[key] = None
             return
         assert attempt.blame is not None, "it missed a deadline"
         deadline = attempt.blame.window[1] or 0
         if text in self._question.texts and (self._since is None or deadline >= self._since):
-            self.found[key] = None
+            self.arrived[key] = None
             insort(self._open.setdefault(text, []), (deadline, key), key=lambda wait: wait[0])
 
     def take(self, pieces: Sequence[Batch | Sample], until: int) -> None:
@@ -117,7 +117,7 @@ class Arrivals:
             came = first_after(max(deadline, at), truth.true, positions)
             if came is None:
                 break
-            self.found[key] = came
+            self.arrived[key] = came
             answered += 1
         del waits[:answered]
         if not waits:

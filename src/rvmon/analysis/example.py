@@ -33,7 +33,7 @@ class Budget(Struct, frozen=True):
     step: int | None = None
 
 
-class Found(Struct, frozen=True):
+class SearchResult(Struct, frozen=True):
     """The result of a search for examples."""
 
     # by kind, the example with the fewest samples; among these, the one that ends first

@@ -14,7 +14,7 @@ from operator import itemgetter
 from msgspec import Struct
 
 from rvmon.analysis.conflicts import Conflict
-from rvmon.analysis.example import Budget, Example, Found, small_step
+from rvmon.analysis.example import Budget, Example, SearchResult, small_step
 from rvmon.analysis.findings import Examination, examine, findings_of
 from rvmon.analysis.representative_inputs import SILENT, Choices, Silence, Valuation, choices_of
 from rvmon.analysis.vacuity import Subject
@@ -127,7 +127,7 @@ def shortest_examples(
     goal: Goal,
     wanted: Sequence[str],
     budget: Budget | None = None,
-) -> Found:
+) -> SearchResult:
     """Look for the shortest example of each kind.
 
     Runs are judged by the core itself, so an example is right by construction. They are tried in
@@ -174,7 +174,7 @@ def shortest_examples(
             continue
         for further in search.after(node, played.cut):
             add(further, next(number))
-    return Found(examples, runs, not heap and search.choices.complete)
+    return SearchResult(examples, runs, not heap and search.choices.complete)
 
 
 def _activity(changes: Mapping[str, Value]) -> int:

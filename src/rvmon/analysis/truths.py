@@ -162,7 +162,7 @@ class _Group:
         self._spec = spec
         self._question = question
         self._formulas: dict[str, Formula] = {}
-        self._made: _Plan | None = None
+        self._plan: _Plan | None = None
         self._run: TruthsRun | None = None
 
     def add(self, question: Question) -> None:
@@ -176,9 +176,9 @@ class _Group:
         key = tuple(self._formulas)
         if key not in plans:
             plans[key] = _Plan(self._spec, self._question, self._formulas)
-        self._made = plans[key]
-        if self._made.plan is not None:
-            self._run = TruthsRun(self._made.plan, source)
+        self._plan = plans[key]
+        if self._plan.plan is not None:
+            self._run = TruthsRun(self._plan.plan, source)
         return self._run is not None
 
     def take(self, piece: Batch | Sample, samples: Sequence[Sample]) -> None:
@@ -194,16 +194,16 @@ class _Group:
 
     def truths(self, ticks: _Ticks) -> dict[str, Truth]:
         """End the run; returns the truths by text of the formula."""
-        assert self._made is not None, "it began"
+        assert self._plan is not None, "it began"
         known = [] if self._run is None else self._run.known()
         truths: dict[Core | None, Truth] = {
             core: Truth(ticks.spans(one.true), ticks.spans(one.false))
-            for core, one in zip(self._made.order, known, strict=True)
+            for core, one in zip(self._plan.order, known, strict=True)
         }
-        if None in self._made.cores.values():
+        if None in self._plan.cores.values():
             nowhere = np.empty((0, 2), np.int64)
             truths[None] = Truth(nowhere, nowhere)
-        return {text: truths[core] for text, core in self._made.cores.items()}
+        return {text: truths[core] for text, core in self._plan.cores.items()}
 
 
 def _born(piece: Batch | Sample, valueless: Set[str]) -> set[str]:

@@ -51,7 +51,7 @@ class Meter:
         self._coverage = _coverage(code)
         self._tests = 0
 
-    def begin(self) -> None:
+    def start(self) -> None:
         """Start a new test: all code measured from now on belongs to it."""
         self._tests += 1
         self._coverage.start()

@@ -120,9 +120,9 @@ class Bench:
         takers: list[Taker] = [self._checker.observe]
         if keeps:
             takers.append(lambda t_ns, values: samples.append((t_ns, dict(values))))
-        self._checker.begin()
+        self._checker.start()
         if self._meter is not None:
-            self._meter.begin()
+            self._meter.start()
         measured = self._meter or nullcontext()
         marked = measured if self._marked else None
         observer = Observer(takers, code=marked, wants_scene=wants_scene)

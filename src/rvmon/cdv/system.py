@@ -234,7 +234,7 @@ class System(Protocol[_Test]):
 
 
 class Checker:
-    """Judges one test after the other: `begin`, `observe` each sample, `finish`.
+    """Judges one test after the other: `start`, `observe` each sample, `finish`.
 
     Names that a specification does not declare are ignored.
 
@@ -257,7 +257,7 @@ class Checker:
             (frozenset((*checked.signals, *checked.events)), take) for checked, take in takers
         ]
 
-    def begin(self) -> None:
+    def start(self) -> None:
         """Start a new test: reset the monitor and the coverage."""
         if self._monitor is not None:
             self._monitor.reset()

@@ -56,7 +56,7 @@ class FailureNotes:
         self._arrivals = None if recording.outages else Arrivals(spec.checked, recording.names)
         # by requirement and number of the attempt, the instant of a late response, ticks; `None`:
         # there was none, or nothing was awaited. Attempts that need a second reading are absent
-        self.late = {} if self._arrivals is None else self._arrivals.found
+        self.late = {} if self._arrivals is None else self._arrivals.arrived
         self.values = values_at(spec)  # the values at failures, without those that need a reading
 
     def take(self, pieces: Sequence[Batch | Sample], until: int) -> None:

@@ -28,14 +28,14 @@ from msgspec import Struct
 from rvmon.files import contents, place_whole
 
 
-def entries(path: Path, *, all_of_them: bool = False) -> list[bytes] | None:
+def entries(path: Path, *, strict: bool = False) -> list[bytes] | None:
     """The entries of a journal before the first damaged one; `None` if there is no file.
 
-    With `all_of_them`, only the last entry may be damaged, as a killed writer truncates it.
+    With `strict`, only the last entry may be damaged, as a killed writer truncates it.
 
     Raises:
         OSError: the file cannot be read.
-        ValueError: with `all_of_them`, an entry before the last is damaged.
+        ValueError: with `strict`, an entry before the last is damaged.
     """
     try:
         lines = path.read_bytes().splitlines(keepends=True)
@@ -45,7 +45,7 @@ def entries(path: Path, *, all_of_them: bool = False) -> list[bytes] | None:
     for line in lines:
         entry = line[_WIDTH:-1]
         if _line(entry) != line:
-            if all_of_them and line is not lines[-1]:
+            if strict and line is not lines[-1]:
                 raise ValueError(f"line {len(found) + 1} is damaged")
             break
         found.append(entry)

@@ -73,20 +73,20 @@ class DurableMonitor:
         self._number = 0
         self.taken = 0
         self.mark = (0, 0)
-        kept = self._found()
+        kept = self._kept_lines()
         self.monitor = spec.monitor(**options) if kept is None else self._taken_up(spec, kept)
         self.monitor.on_decided(self._hear)
         for line in [] if kept is None else kept[1:]:
-            self._again(line)
+            self._replay(line)
         # The verdicts of these samples are reported now: a new snapshot includes them.
         self.save()
 
-    def _found(self) -> list[bytes] | None:
+    def _kept_lines(self) -> list[bytes] | None:
         if self._path.exists() and not (self._path.is_file() or self._path.is_dir()):
             # Reading a pipe or device might never end.
             raise SnapshotError(f"{self._path} is not a regular file: name one")
         try:
-            return entries(self._path, all_of_them=True)
+            return entries(self._path, strict=True)
         except ValueError as error:  # later samples cannot be judged without the damaged one
             raise SnapshotError(
                 f"{self._path}: {error}, and not the last one: name another file, or delete this "
@@ -110,7 +110,7 @@ class DurableMonitor:
         except SnapshotError as error:
             raise SnapshotError(f"{self._path}: {error}") from None
 
-    def _again(self, line: bytes) -> None:
+    def _replay(self, line: bytes) -> None:
         try:
             t, values = json.loads(line)
         except (ValueError, TypeError, RecursionError):

@@ -262,7 +262,7 @@ class _Product:
         self.alphabet = alphabet
         self.limit = limit
         self.leaves: dict[tuple[Node, ...], int] = {}
-        self.made: dict[tuple[Node, ...], Tree] = {}
+        self.trees: dict[tuple[Node, ...], Tree] = {}
 
     def tree(self, nodes: tuple[Node, ...]) -> Tree:
         """The classes of all letters over the propositions on which some of the nodes decide."""
@@ -272,12 +272,12 @@ class _Product:
             if len(self.leaves) * len(nodes) > self.limit:
                 raise TooManyClassesError
             return found
-        known = self.made.get(nodes)
+        known = self.trees.get(nodes)
         if known is None:
             lower = (
                 tuple(node.children[digit] if node.level == level else node for node in nodes)
                 for digit in range(len(self.alphabet.truths[level]))
             )
             children = tuple(map(self.tree, lower))
-            known = self.made[nodes] = joined(self.alphabet.strides[level], children)
+            known = self.trees[nodes] = joined(self.alphabet.strides[level], children)
         return known

@@ -44,7 +44,7 @@ class Shapes:
         Formulas that differ only in propositions share an automaton, which has the alphabet and
         residuals of the first of them; `residuals` translates these.
         """
-        return self._found(required, alphabet, budget)[0]
+        return self._built(required, alphabet, budget)[0]
 
     def residuals(
         self, required: mtl.Next, alphabet: Alphabet, budget: Budget
@@ -54,13 +54,13 @@ class Shapes:
         Raises:
             ValueError: the formula has no automaton.
         """
-        automaton, nodes = self._found(required, alphabet, budget)
+        automaton, nodes = self._built(required, alphabet, budget)
         if automaton is None:
             raise ValueError("it has no automaton")
         own = {id(node): mine for node, mine in zip(nodes, _nodes(required), strict=True)}
         return [_renamed(location.residual, own) for location in automaton.locations]
 
-    def _found(
+    def _built(
         self, required: mtl.Next, alphabet: Alphabet, budget: Budget
     ) -> tuple[Automaton | None, Sequence[mtl.Core]]:
         nodes = _nodes(required)
@@ -73,11 +73,11 @@ class Shapes:
         # bounds were put back.
         key = (shape, *bounds)
         if key not in self._automata:
-            made = self._made(shape, nodes, stand_ins, alphabet, budget)
+            made = self._construct(shape, nodes, stand_ins, alphabet, budget)
             self._automata[key] = made, nodes
         return self._automata[key]
 
-    def _made(
+    def _construct(
         self,
         shape: _Key,
         nodes: Sequence[mtl.Core],

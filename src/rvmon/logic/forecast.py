@@ -78,10 +78,10 @@ class Forecaster:
         if key not in self._values:
             if len(self._values) > _MOST_KNOWN:
                 self._values.clear()
-            self._values[key] = self._found(residual, ages, gap)
+            self._values[key] = self._computed(residual, ages, gap)
         return self._values[key]
 
-    def _found(self, residual: Residual, ages: Sequence[int], gap: int | None) -> bool | None:
+    def _computed(self, residual: Residual, ages: Sequence[int], gap: int | None) -> bool | None:
         # It is certainly false if no continuation satisfies it, and certainly true if none
         # satisfies its negation. Both are tests of emptiness.
         if not self.admits(self.duals.affirmed(residual), ages, gap):

@@ -62,7 +62,7 @@ class _Step:
         self.ages = ages
         self.limit = limit
         self.read = read
-        self.made: dict[mtl.Core, Residual] = {}
+        self.instances: dict[mtl.Core, Residual] = {}
 
     def atom(self, atom: Atom) -> Residual:
         node, clock = atom
@@ -95,9 +95,9 @@ class _Step:
         """The residual of `node` instantiated at this position."""
         # No `functools.cache` here: its reference cycle would keep each step in memory until the
         # garbage collector runs.
-        found = self.made.get(node)
+        found = self.instances.get(node)
         if found is None:
-            found = self.made[node] = self._instance(node)
+            found = self.instances[node] = self._instance(node)
         return found
 
     def _instance(self, node: mtl.Core) -> Residual:

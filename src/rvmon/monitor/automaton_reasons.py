@@ -39,7 +39,7 @@ class Reasons:
         residuals = self._residuals = compiled.shaped_residuals
         self._cuts = cache(lambda location: location_of(residuals[location]).cuts)
         self._after_start = cache(lambda location: deadline(residuals[location], (0,)))
-        self._found: dict[tuple[int, ...], Cause | None] = {}
+        self._causes: dict[tuple[int, ...], Cause | None] = {}
 
     def of(self, before: Token, letter: int, verdict: bool, t: int) -> Cause | None:
         """The cause of a decision at `t`, taken in state `before` with `letter`.
@@ -50,9 +50,9 @@ class Reasons:
         ages = zip(self._cuts(location), anchors, strict=True)
         # Within one region no window opens or ends, so all its ages have the same cause.
         key = (location, letter, verdict, *[bisect_right(cuts, t - at) for cuts, at in ages])
-        if key not in self._found:
-            self._found[key] = self._find(before, letter, verdict, t)
-        return self._found[key]
+        if key not in self._causes:
+            self._causes[key] = self._find(before, letter, verdict, t)
+        return self._causes[key]
 
     def _find(self, before: Token, letter: int, verdict: bool, t: int) -> Cause | None:
         residual = self._residuals[before[0]]

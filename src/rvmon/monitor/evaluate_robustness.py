@@ -87,21 +87,21 @@ class _Run:
         planned = planned_core(compiled, only, measured=True)
         self._run = RecordingRun(compiled.checked, planned, source, finds=False)
         self._run.core.measure(FIGURES, streams)
-        self._found = RecordedMargins(planned.packed.ids)
+        self._recorded = RecordedMargins(planned.packed.ids)
 
     def take(self, piece: Batch | Sample) -> None:
         if isinstance(piece, Sample):
             self._run.take(piece)
         else:
-            self._found.expect(len(piece.times))
+            self._recorded.expect(len(piece.times))
             for first in range(0, len(piece.times), _ROWS):
                 self._run.take(piece.cut(first, min(first + _ROWS, len(piece.times))))
-                self._found.add(self._run.core.margins())
+                self._recorded.add(self._run.core.margins())
 
     def margins(self) -> Margins:
         self._run.finish()
-        self._found.add(self._run.core.margins())
-        return self._found.margins()
+        self._recorded.add(self._run.core.margins())
+        return self._recorded.margins()
 
 
 _COLUMNS = ("t", "low", "high", "kept")

@@ -290,13 +290,13 @@ def _note(
     if unknown is not None:
         looked_at = unknown if given is None else unknown[given]
         if looked_at.any():
-            alternations.found[name].add_all(looked_at)
+            alternations.by_name[name].add_all(looked_at)
             return
         count = len(looked_at)
     elif given is not None:
         count = int(np.count_nonzero(given)) if given.dtype.kind == "b" else len(given)
     if count:
-        alternations.found[name].add_known(count)
+        alternations.by_name[name].add_known(count)
 
 
 def _given(cells: Cells) -> NDArray[Any] | None:

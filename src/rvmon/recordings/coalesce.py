@@ -185,25 +185,25 @@ class Alternations:
     """The alternations of all names of a recording; payload fields are called `event.field`."""
 
     def __init__(self) -> None:
-        self.found: dict[str, Alternation] = defaultdict(Alternation)
+        self.by_name: dict[str, Alternation] = defaultdict(Alternation)
 
     def note(self, values: Mapping[str, Value]) -> None:
         """Count the values of a sample."""
         for name, value in values.items():
             if value.__class__ in _SCALARS and value == value:
-                self.found[name].add_known(1)
+                self.by_name[name].add_known(1)
             elif isinstance(value, Mapping):
                 for field, scalar in value.items():
-                    self.found[f"{name}.{field}"].add(is_unknown=is_unknown(scalar))
+                    self.by_name[f"{name}.{field}"].add(is_unknown=is_unknown(scalar))
             elif not isinstance(value, tuple):
-                self.found[name].add(is_unknown=is_unknown(value))
+                self.by_name[name].add(is_unknown=is_unknown(value))
 
     def remarked(self, health: Iterable[Health]) -> tuple[Health, ...]:
         """The findings, with `REMARK` on unknown values that look like a merge of topics."""
         return tuple(
             replace(one, remark=REMARK)
             if one.kind in (HealthKind.NAN, HealthKind.NONE)
-            and (found := self.found.get(one.name)) is not None
+            and (found := self.by_name.get(one.name)) is not None
             and found.is_merge
             else one
             for one in health

@@ -46,7 +46,7 @@ _SORTS = 5  # labels that a call may note of a column before it takes a row
 
 
 def csv_batches(
-    text: CsvText[Found], layout: Layout, ignoring: frozenset[str]
+    text: CsvText[Parsed], layout: Layout, ignoring: frozenset[str]
 ) -> Iterator[Batch | Iterator[Row]]:
     """Yield the rows of a text in order: as batches, and odd rows one by one.
 
@@ -79,7 +79,7 @@ def _split(text: str, before: int) -> Iterator[tuple[int, list[str]]]:
     return split_lines(bounded_lines(io.StringIO(text, newline=""), before), before)
 
 
-class Found(Struct, frozen=True):
+class Parsed(Struct, frozen=True):
     """The result of one call of the C reader; see `csv.h`."""
 
     batch: Batch | None  # line numbers are relative to the text; `None`: there is no row
@@ -103,7 +103,7 @@ class _Reader:
         has_labels = any(column.kind is Kind.LABEL for column in layout.columns)
         self._labels = max(_LABELS if has_labels else 0, _SORTS * (1 + len(layout.columns)))
 
-    def read(self, text: bytes, start: int = 0, *, is_ended: bool = False) -> Found:
+    def read(self, text: bytes, start: int = 0, *, is_ended: bool = False) -> Parsed:
         """Read rows of a text from offset `start` on, as many as one call can.
 
         `is_ended`: whether the text ends with its last row. May run in several threads.
@@ -149,15 +149,15 @@ class _Reader:
             first = lines.item(0)
             own = None if lines.item(rows - 1) - first == rows - 1 else lines[:rows]
             batch = batch_of(numbers[0, :rows], self.layout, cells, first, own)
-        return Found(batch, fault, ended, at, end, passed, label_count, len(labels))
+        return Parsed(batch, fault, ended, at, end, passed, label_count, len(labels))
 
-    def batch(self, text: CsvText[Found]) -> Generator[Batch, None, tuple[int, int]]:
+    def batch(self, text: CsvText[Parsed]) -> Generator[Batch, None, tuple[int, int]]:
         """Yield the next batch, if any; return why the call ended, and the end of an odd row."""
         source, before = text.rest, text.line
         if text.start == len(source):
             return _ALL, 0
-        if text.found is not None:
-            found, text.found = text.found(), None
+        if text.result is not None:
+            found, text.result = text.result(), None
         else:
             found = self.read(source, text.start, is_ended=text.is_ended)
         batch, fault = found.batch, found.fault

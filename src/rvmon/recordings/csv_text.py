@@ -26,7 +26,7 @@ else:
     native_csv = extension("_csv", CSV_FOLDER, "the reader of CSV")
 
 
-_Found = TypeVar("_Found")
+_Result = TypeVar("_Result")
 
 _MARK = b"\xef\xbb\xbf"  # the byte order mark of UTF-8, which some editors put before a text
 
@@ -38,7 +38,7 @@ _END = re.compile(rb"\r\n|\n|\r(?!\Z)")
 """The end of a line; a carriage return at the end of a block may be the first half of one."""
 
 
-class CsvText(Generic[_Found]):
+class CsvText(Generic[_Result]):
     """A text that is read in stretches, and the position up to which it was taken.
 
     A stretch ends with a line, mostly also with a row. If not, its last row is read again together
@@ -52,16 +52,16 @@ class CsvText(Generic[_Found]):
             first += file.read(places.BLOCK - size)
         self.is_whole = len(first) < places.BLOCK  # the first read has reached the end of the file
         self._stretches = stretches(first, file)
-        self._read: Generator[tuple[bytes, Callable[[], _Found] | None], None, None]
+        self._read: Generator[tuple[bytes, Callable[[], _Result] | None], None, None]
         self._read = ((stretch, None) for stretch in self._stretches)
         # the current stretch; what another thread has found in the whole of it, if read ahead
-        self.rest, self.found = next(self._read)
+        self.rest, self.result = next(self._read)
         self.start = len(_MARK) if self.rest.startswith(_MARK) else 0  # offset of text not taken
         self.line = 0  # the number of lines taken
         self.is_last = False  # whether there is no further stretch
         self.lost: frozenset[str] = frozenset()  # names made unknown, as the last line has no end
 
-    def read_ahead(self, read: Callable[[bytes], _Found]) -> None:
+    def read_ahead(self, read: Callable[[bytes], _Result]) -> None:
         """Have other threads read further stretches."""
         self._read = read_ahead(self._stretches, read)
 
@@ -84,9 +84,9 @@ class CsvText(Generic[_Found]):
             self._refuse_long()
         further = next(self._read, None)
         self.is_last = further is None
-        stretch, self.found = further or (b"", None)
+        stretch, self.result = further or (b"", None)
         if self.start < len(self.rest):
-            stretch, self.found = self.rest[self.start :] + stretch, None
+            stretch, self.result = self.rest[self.start :] + stretch, None
         self.rest = stretch
         self.start = 0
         return True

@@ -21,14 +21,14 @@ class LastUpdates:
     def __init__(self, names: Set[str], ignoring: frozenset[str]) -> None:
         self._names = names
         self._ignoring = ignoring
-        self._found: dict[str, Update] = {}
+        self._latest: dict[str, Update] = {}
 
     def add(self, pieces: Sequence[Batch | Sample]) -> None:
         """Take the next pieces of the recording."""
         wanted = set(self._names)
         for piece in reversed(pieces):  # the last piece mostly has an update of every signal
             for name, update in self.last_in(piece, wanted):
-                self._found[name] = update
+                self._latest[name] = update
                 wanted.discard(name)
             if not wanted:
                 return
@@ -43,7 +43,7 @@ class LastUpdates:
             own = self.last_in(piece, self._names) if piece is not None and is_past else ()
         else:
             own = self.last_in(piece.up_to(instant), self._names)
-        return {**self._found, **dict(own)}
+        return {**self._latest, **dict(own)}
 
     def last_in(self, piece: Batch | Sample, names: Set[str]) -> Iterator[tuple[str, Update]]:
         """Yield the name and last update in a piece of each of some signals."""

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rvmon.recordings.batch import Batch
-    from rvmon.recordings.csv_batch import Found
+    from rvmon.recordings.csv_batch import Parsed
     from rvmon.recordings.messages.file import MessageFile
 
 _Piece = TypeVar("_Piece")
@@ -87,14 +87,14 @@ class FileRecording:
         self.end: int | None = None
         self._messages: MessageFile | None = None
         self._joined: Joined | None = None
-        self._first_text: tuple[CsvText[Found], Layout] | None = None
-        self._text: CsvText[Found] | None = None
+        self._first_text: tuple[CsvText[Parsed], Layout] | None = None
+        self._text: CsvText[Parsed] | None = None
         if self._format == "csv":
             with (
                 places.named_errors(self.path),
                 opened_as_csv(self.path, schema.stamps) as (plain, _),
             ):
-                text: CsvText[Found] = CsvText(plain)
+                text: CsvText[Parsed] = CsvText(plain)
                 layout = self._layout(text)
             self._take_names(layout)
             self._first_text = (text, layout) if text.is_whole else None
@@ -231,14 +231,16 @@ class FileRecording:
         with self._opened() as (plain, raw):
             self._open_file = raw if self.can_be_read_again else None
             if self._format == "csv":
-                text: CsvText[Found] = CsvText(plain)
+                text: CsvText[Parsed] = CsvText(plain)
                 yield from self._csv_batches(text, self._layout(text))
             else:
                 from rvmon.recordings.jsonl_batch import jsonl_batches
 
                 yield from jsonl_batches(plain, self._schema, self.ignored, self._take_stamps)
 
-    def _csv_batches(self, text: CsvText[Found], layout: Layout) -> Iterator[Batch | Iterator[Row]]:
+    def _csv_batches(
+        self, text: CsvText[Parsed], layout: Layout
+    ) -> Iterator[Batch | Iterator[Row]]:
         from rvmon.recordings.csv_batch import csv_batches
 
         self._text = text
@@ -299,7 +301,7 @@ class FileRecording:
         )
         return [Health(HealthKind.CUT, "the last line", remark=remark)]
 
-    def _layout(self, text: CsvText[Found]) -> Layout:
+    def _layout(self, text: CsvText[Parsed]) -> Layout:
         known, source, start = self._schema.layouts, text.rest, text.start
         end = source.find(b"\n", start) + 1
         found: Layout | None = known.get(source[start:end])

@@ -215,7 +215,7 @@ class Changes:
         self._stale_after = stale_after
         self._last: int | None = None
         self._known: Scalar = None
-        self._found: list[tuple[int, Scalar]] = []
+        self._changes: list[tuple[int, Scalar]] = []
         self._courses: list[Course] = []
 
     def add(self, t: int, value: Value, *, is_signal: bool) -> None:
@@ -223,12 +223,12 @@ class Changes:
         if is_signal:
             self._add_value(t, known(value))
         elif value is not False:
-            self._found.append((t, None if value is None else True))
+            self._changes.append((t, None if value is None else True))
 
     def _add_value(self, t: int, known: Scalar) -> None:
         self._grow_stale(t)
         if self._last is None or self._known != known:
-            self._found.append((t, known))
+            self._changes.append((t, known))
         self._last, self._known = t, known
 
     def _grow_stale(self, t: int | None) -> None:
@@ -238,7 +238,7 @@ class Changes:
         # A value is still known `stale_after` ticks after its update, and unknown one tick later.
         stale_at = self._last + self._stale_after + 1
         if t is None or t > stale_at:
-            self._found.append((stale_at, None))
+            self._changes.append((stale_at, None))
             self._known = None
 
     def add_cells(self, batch: Batch, cells: Cells) -> None:
@@ -285,13 +285,13 @@ class Changes:
         occurrences: dict[int, Scalar] = {}
         for t, state in zip(times[may].tolist(), states[may].tolist(), strict=True):
             occurrences[t] = True if state == YES else occurrences.get(t)
-        self._found += occurrences.items()
+        self._changes += occurrences.items()
 
     def _settle(self) -> None:
         """Move the changes added one by one into columns."""
-        if self._found:
-            self._courses.append(Course.of(self._found))
-            self._found = []
+        if self._changes:
+            self._courses.append(Course.of(self._changes))
+            self._changes = []
 
     def ended(self) -> Course:
         """All changes of a signal, or all sure and possible occurrences of an event."""

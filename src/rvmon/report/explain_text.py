@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from rvmon.analysis.example import Budget, Example, Found
+from rvmon.analysis.example import Budget, Example, SearchResult
 from rvmon.analysis.graph import graph_lines, graph_of
 from rvmon.analysis.plain_english import facts_of, requirement_in_words
 from rvmon.analysis.shortest_examples import Analysis, difference_of, shortest_examples, verdict_of
@@ -251,7 +251,7 @@ def _impossible(requirement: Requirement, can: Possible) -> Mapping[Verdict, str
     return reasons
 
 
-def _not_found(search: Found) -> str:
+def _not_found(search: SearchResult) -> str:
     tried = f"none found in {search.runs} short runs"
     return f"{tried}, which are all there are" if search.exhausted else f"{tried}; not decided"
 

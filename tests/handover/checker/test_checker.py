@@ -30,7 +30,7 @@ def test_judging_online_equals_judging_the_recording(spec):
     checker = Checker(spec)
     late = "mutant-releases-late"
     for name, verdict in ((late, "F"), ("released", "P"), ("withheld-no-gaze", "NT"), (late, "F")):
-        checker.begin()
+        checker.start()
         run = run_test(TESTS[name], observer=checker.observe)
         online = checker.finish(run.end_ns)
         names = {*spec.checked.signals, *spec.checked.events}

@@ -28,7 +28,7 @@ EITHER = frozenset({"activateRobot", "humanIsReady"})
 def failed(test, mutation=None):
     """The requirements that fail when the correct robot, or a mutated one, plays a test."""
     checker = Checker(SPEC)
-    checker.begin()
+    checker.start()
     run = run_test(test, robot="correct", mutation=mutation, observer=checker.observe)
     verdicts = checker.finish(run.end_ns).verdicts
     return {name for name, verdict in verdicts.items() if verdict == "F"}

@@ -19,7 +19,7 @@ def measured():
     meter = Meter(robot_code())
     runs, hits = {}, {}
     for name in ("released", "nobody-comes"):
-        meter.begin()
+        meter.start()
         runs[name] = run_test(TESTS[name], around_robot_step=lambda: meter)
         hits[name] = meter.hits()
     return runs, hits

@@ -30,7 +30,7 @@ def test_verdicts_are_those_the_file_expects(test: AbstractTest) -> None:
     """Else nothing fails, and the robot goes from state to state as its protocol says."""
     assert test.robot is not None
     checker = Checker(spec_of(test.robot))
-    checker.begin()
+    checker.start()
     run = run_test(test, observer=checker.observe)
     report = checker.finish(run.end_ns)
     verdicts = {name: str(verdict) for name, verdict in report.verdicts.items()}

@@ -40,7 +40,7 @@ def test_what_ran_is_hit(code):
     meter = Meter(measured)
     found = []
     for level in (1, 6):
-        meter.begin()
+        meter.start()
         with meter:
             toy.climb(level)
         found.append({group: list(items) for group, items in meter.hits().items()})

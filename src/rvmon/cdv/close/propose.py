@@ -70,7 +70,7 @@ class Proposer:
             name: _stream(campaign, name, robot, self._rng.getrandbits(32)) for name in strategies
         }
         self._campaign = campaign
-        self._made = 0
+        self._count = 0
         self._tests: list[Played] = []
         self._draws: dict[str, Sequence[Draw]] = {}
         self._tries: Counter[Goal] = Counter()
@@ -217,8 +217,8 @@ class Proposer:
         return test
 
     def _next_name(self) -> str:
-        self._made += 1
-        return f"{STRATEGY}-{self._made:03}"
+        self._count += 1
+        return f"{STRATEGY}-{self._count:03}"
 
     def _renamed(self, test: Test, name: str, origin: str) -> Test:
         named = structs.replace(test, name=name, strategy=STRATEGY, text=origin)

@@ -254,7 +254,7 @@ def try_spec_mutants(
     checker = Checker(Spec(every))
     killed: dict[str, SpecTried] = {}
     for test, run in recorded.items():
-        checker.begin()
+        checker.start()
         for t_ns, values in run.samples:
             checker.observe(t_ns, values)
         verdicts = checker.finish(run.run.end_ns).verdicts

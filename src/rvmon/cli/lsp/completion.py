@@ -39,11 +39,11 @@ def proposals(names: Names, place: Span) -> tuple[Span, dict[str, str]]:
     items = split_items(before)
     item = before[items[-1][0] :] if items else ""
     alone = not before[before.rfind("\n") + 1 :].strip()
-    completions = dict(_found(names, item, alone=alone))
+    completions = dict(_candidates(names, item, alone=alone))
     return Span(place.source, start, place.start), completions
 
 
-def _found(names: Names, item: str, *, alone: bool) -> Iterator[tuple[str, str]]:
+def _candidates(names: Names, item: str, *, alone: bool) -> Iterator[tuple[str, str]]:
     accepted, read = accepted_terminals(grammar(), item, "item")
     compared = _COMPARED.search(item)
     if compared and (type_ := names.types.get(compared[1])) and type_.labels:

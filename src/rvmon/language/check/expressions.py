@@ -56,7 +56,7 @@ class Checker:
 
     def top(self, expression: ast.Expression, scope: sc.Scope) -> rv.Formula | None:
         """A complete formula; `None` if it has an error, which is recorded."""
-        self.effort.begin()
+        self.effort.restart()
         return self.collected(self.formula, expression, scope)
 
     def collected(self, make: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T | None:

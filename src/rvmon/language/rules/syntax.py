@@ -127,7 +127,7 @@ class Effort:
         self._refused = False
         self._rest = BUDGET + PER_CHARACTER * characters
 
-    def begin(self) -> None:
+    def restart(self) -> None:
         """Start to count a new formula."""
         self._size = 0
         self._refused = False

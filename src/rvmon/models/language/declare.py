@@ -47,22 +47,22 @@ class Parts:
 class Findings:
     """Collects findings without duplicates, so that all errors of a model are reported together."""
 
-    found: dict[tuple[str, str, int], Diagnostic] = field(default_factory=dict)
+    diagnostics: dict[tuple[str, str, int], Diagnostic] = field(default_factory=dict)
 
     def add(self, diagnostic: Diagnostic) -> None:
         """Add a finding. Instances of one template repeat its findings, which count once."""
         start = diagnostic.spans[0].span.start if diagnostic.spans else -1
-        self.found.setdefault((diagnostic.code, diagnostic.message, start), diagnostic)
-        if len(self.found) >= MAX_FINDINGS:
+        self.diagnostics.setdefault((diagnostic.code, diagnostic.message, start), diagnostic)
+        if len(self.diagnostics) >= MAX_FINDINGS:
             self.raise_errors()
 
     def has(self, code: str) -> bool:
         """Whether there is a finding with a code."""
-        return any(found == code for found, _, _ in self.found)
+        return any(known == code for known, _, _ in self.diagnostics)
 
     def raise_errors(self) -> None:
         """Raise all errors found so far, if there are any."""
-        errors = [d for d in self.found.values() if d.severity is Severity.ERROR]
+        errors = [d for d in self.diagnostics.values() if d.severity is Severity.ERROR]
         if errors:
             raise refusal(*_counted(errors))
 

@@ -59,7 +59,7 @@ def elaborate(document: Document, constants: Mapping[str, int] | None = None) ->
             findings.add(finding("TA019", f"more than {MAX_EDGES:,} edges", None, fix))
         if findings.has("TA019"):
             break
-    if not automata and not findings.found:
+    if not automata and not findings.diagnostics:
         findings.add(finding("TA021", "there is no automaton", None, "add `automaton name { … }`"))
     names = sc.Names(top, symbols, functions)
     # A network with missing automata is an error itself; its queries have no meaning.
@@ -79,7 +79,7 @@ def elaborate(document: Document, constants: Mapping[str, int] | None = None) ->
     return nta.Network(
         document.name, document.title, document.unit,
         tuple(parts.clocks), tuple(parts.variables), tuple(parts.channels), tuple(automata),
-        queries, signals, tuple(findings.found.values()), names, _priorities(parts, ranks),
+        queries, signals, tuple(findings.diagnostics.values()), names, _priorities(parts, ranks),
         has_split_edges=bool(diagonals.places) or parts.are_split, fraction=resolver.fraction,
     )  # fmt: skip
 
@@ -175,7 +175,7 @@ def _queries(
                 claim(query.id, query.span, ids)
             meaning = _formula(query.formula, resolver, top)
             queries.append(nta.Query(query.id, query.remark, query.text, meaning, query.span))
-        for found in own.found.values():
+        for found in own.diagnostics.values():
             findings.add(skipped_query(query.text, found))
     return tuple(queries)
 

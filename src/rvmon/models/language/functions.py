@@ -36,7 +36,7 @@ class Functions:
     variables: list[ex.Variable] = field(default_factory=list)
     locals: list[ex.Variable] = field(default_factory=list)  # the first has slot −1
     # by the text of the function, its scope, and the things bound to its parameters
-    made: dict[tuple[object, ...], ex.Function] = field(default_factory=dict)
+    functions: dict[tuple[object, ...], ex.Function] = field(default_factory=dict)
     # functions under construction, to detect recursion
     open: set[tuple[object, ...]] = field(default_factory=set)
 
@@ -83,7 +83,7 @@ class Functions:
             else:
                 values += [symbols.value_of(leaf, argument.span) for leaf in symbols.leaves(thing)]
         key = (id(text), id(symbol.scope), *bound)
-        function = self.made.get(key)
+        function = self.functions.get(key)
         if function is None:
             if key in self.open:
                 fix = "write a loop"
@@ -91,7 +91,7 @@ class Functions:
                 raise model_error("TA016", message, written.span, fix)
             self.open.add(key)
             try:
-                function = self.made[key] = self._make(text, symbol.scope, bound, resolver)
+                function = self.functions[key] = self._make(text, symbol.scope, bound, resolver)
             finally:
                 self.open.discard(key)
         called = ex.Invoke(function, (*values, *chosen), written.span)

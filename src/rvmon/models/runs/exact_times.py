@@ -62,9 +62,9 @@ class Rules:
 
     def value(self, now: Configuration, expression: ex.Expression) -> int:
         """The value of an expression without clocks."""
-        return int(self._made(expression, evaluator)(now.locations, now.values))
+        return int(self._compiled(expression, evaluator)(now.locations, now.values))
 
-    def _made(self, what: T, make: Callable[[T], Callable[..., Any]]) -> Callable[..., Any]:
+    def _compiled(self, what: T, make: Callable[[T], Callable[..., Any]]) -> Callable[..., Any]:
         known = self._ready.get(id(what))  # `what` is kept, so that its id stays unique
         if known is None:
             known = self._ready[id(what)] = (what, make(what))
@@ -140,7 +140,7 @@ class Rules:
     def channel_index(self, now: Configuration, edge: Edge) -> int:
         """The index of the channel that an edge uses, given the variables."""
         assert edge.sync is not None, "asked of synchronising edges only"
-        return int(self._made(edge.sync.slot, slot_evaluator)(now.locations, now.values))
+        return int(self._compiled(edge.sync.slot, slot_evaluator)(now.locations, now.values))
 
     def _receives(self, now: Configuration, edge: Edge, channel: int) -> bool:
         """Whether an edge receives from a channel."""
@@ -270,7 +270,7 @@ class Rules:
         for automaton, edge in action.edges:
             locations[automaton] = edge.target
             try:
-                self._made(edge.updates, runner)(now.locations, frame)
+                self._compiled(edge.updates, runner)(now.locations, frame)
             except ModelError as error:
                 raise _FailedUpdateError(str(error)) from error
         for clock, value in frame.clocks.items():

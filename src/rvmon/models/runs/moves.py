@@ -185,19 +185,19 @@ class Space:
         kinds = enumerate(self._kinds(state))
         committed = {index for index, kind in kinds if kind is ex.LocationKind.COMMITTED}
 
-        def goes(edges: Iterable[ReadyEdge]) -> bool:
+        def may_move(edges: Iterable[ReadyEdge]) -> bool:
             return not committed or any(edge.automaton in committed for edge in edges)
 
         broadcasts = []
         for edge in tried.leaving():
             if edge.channel is None:
-                if goes((edge,)) and tried.is_able(edge):
+                if may_move((edge,)) and tried.is_able(edge):
                     yield (edge,), ()
             elif edge.sends and self.network.channels[edge.channels[0]].broadcast:
                 broadcasts.append(edge)
             elif edge.sends and tried.is_able(edge):
                 for other in tried.receivers(edge):
-                    if goes((edge, other)):
+                    if may_move((edge, other)):
                         yield (edge, other), ()
         for sender in filter(tried.is_able, broadcasts):
             groups: dict[int, list[ReadyEdge | None]] = {}
@@ -209,7 +209,7 @@ class Space:
                     group.append(None)
             for chosen in product(*groups.values()):
                 edges = (sender, *(edge for edge in chosen if edge is not None))
-                if goes(edges):
+                if may_move(edges):
                     yield (
                         edges,
                         tuple(

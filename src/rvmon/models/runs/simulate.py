@@ -149,10 +149,10 @@ class _Paces:
         if not self._are_changed:
             return self._ones
         if id(state) not in self._known:
-            self._known[id(state)] = (state, self._found(state))
+            self._known[id(state)] = (state, self._computed(state))
         return self._known[id(state)][1]
 
-    def _found(self, state: State) -> tuple[float, ...]:
+    def _computed(self, state: State) -> tuple[float, ...]:
         found: dict[int, float] = {}
         for place in self._places(state):
             for rate in place.rates:

@@ -87,7 +87,7 @@ def _remark(run: Run | None) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class _Found:
+class _Result:
     """The result of the searches for a query."""
 
     # whether a run shows that the query holds (`E<>`), or that it does not (`A[]`)
@@ -97,7 +97,7 @@ class _Found:
     holds: bool | None = None  # whether the query holds, if no single run can show it
 
 
-def _search(question: _Question, query: nta.Query) -> _Found:
+def _search(question: _Question, query: nta.Query) -> _Result:
     match query.formula:
         case nta.LeadsToFormula(left, right):
             if guards.is_linear(left) or guards.is_linear(right):
@@ -114,7 +114,7 @@ def _search(question: _Question, query: nta.Query) -> _Found:
     match query.formula:
         case nta.LeadsToFormula(left, right, bound):
             if guards.is_plain(left) and guards.is_plain(right):
-                return _Found(False, _unanswered(question, left, right, bound))
+                return _Result(False, _unanswered(question, left, right, bound))
             answered = ex.PathFormula(ex.PathOp.EVENTUALLY, right, bound)
             implied = ex.BinaryOperation(ex.BinaryOp.IMPLY, left, answered)
             return _at_start(question, ex.PathFormula(ex.PathOp.INVARIANTLY, implied))
@@ -128,7 +128,7 @@ def _search(question: _Question, query: nta.Query) -> _Found:
             ends = op in (ex.PathOp.POSSIBLY, ex.PathOp.EVENTUALLY)
             on_run = ex.PathOp.FINALLY if ends else ex.PathOp.GLOBALLY
             linear = guards.normal_form(ex.PathFormula(on_run, body, None, until), positive=shows)
-            return _Found(shows, _accepted(question, linear, query.span))
+            return _Result(shows, _accepted(question, linear, query.span))
         case ex.PathFormula(op, body, bound, until) if until == ex.TRUE and op in ex.OUTERMOST:
             if op in (ex.PathOp.POSSIBLY, ex.PathOp.POTENTIALLY_ALWAYS):
                 sought, shows = guards.normal_form(body), True
@@ -140,13 +140,13 @@ def _search(question: _Question, query: nta.Query) -> _Found:
                 ):
                     return _reach_nested(question, sought, shows)
                 case ex.PathOp.POSSIBLY | ex.PathOp.INVARIANTLY if guards.is_plain(sought):
-                    return _Found(shows, *_reach(question, sought, bound))
+                    return _Result(shows, *_reach(question, sought, bound))
                 case ex.PathOp.POSSIBLY | ex.PathOp.INVARIANTLY if not guards.has_paths(sought):
                     alive, dead = (guards.with_deadlock(sought, value=v) for v in (False, True))
                     run = question.run(Sought(Seek.DEADLOCK, alive, dead, bound=bound))
-                    return _Found(shows, run)
+                    return _Result(shows, run)
                 case ex.PathOp.EVENTUALLY | ex.PathOp.POTENTIALLY_ALWAYS if guards.is_plain(sought):
-                    return _Found(shows, _staying(question, None, sought, bound))
+                    return _Result(shows, _staying(question, None, sought, bound))
                 case _:
                     return _at_start(question, query.formula)
         case formula if guards.has_paths(formula):
@@ -156,7 +156,7 @@ def _search(question: _Question, query: nta.Query) -> _Found:
             raise model_error("TA020", "a query refers to runs", query.span, fix)
 
 
-def _at_start(question: _Question, formula: ex.Expression) -> _Found:
+def _at_start(question: _Question, formula: ex.Expression) -> _Result:
     """Decide at the start a formula with path operators, which no single run can show."""
     # A backward search does not notice runs that leave the range of a variable, so a forward
     # search comes first.
@@ -164,8 +164,8 @@ def _at_start(question: _Question, formula: ex.Expression) -> _Found:
     if not question.meter.stopped:
         found = question.run(Sought(Seek.START, nested=guards.normal_form(formula))) is not None
         if found or not question.meter.stopped:
-            return _Found(True, None, holds=found)
-    return _Found(True, None)
+            return _Result(True, None, holds=found)
+    return _Result(True, None)
 
 
 # Reachability.
@@ -201,7 +201,7 @@ def _reach(
     return run, Policy.SHORTEST
 
 
-def _reach_nested(question: _Question, formula: ex.Expression, shows: bool) -> _Found:
+def _reach_nested(question: _Question, formula: ex.Expression, shows: bool) -> _Result:
     """Find a run to a formula with path operators, separately for each of its alternatives."""
     run = None
     for parts in guards.distributed(formula, lambda part: not guards.has_paths(part)):
@@ -214,7 +214,7 @@ def _reach_nested(question: _Question, formula: ex.Expression, shows: bool) -> _
             run = _unanswered(question, guards.conjunction(first), away, lasting.bound)
         if run is not None or question.meter.stopped:
             break
-    return _Found(shows, run)
+    return _Result(shows, run)
 
 
 # Staying.
@@ -249,7 +249,7 @@ def _staying(
 # Acceptance by an automaton.
 
 
-def _on_runs(question: _Question, query: nta.Query, formula: ex.Expression) -> _Found:
+def _on_runs(question: _Question, query: nta.Query, formula: ex.Expression) -> _Result:
     """Decide whether all runs satisfy an LTL formula, or (`E`) some run does."""
     body, shows = formula, False
     if isinstance(formula, ex.PathFormula) and formula.op in (
@@ -258,7 +258,7 @@ def _on_runs(question: _Question, query: nta.Query, formula: ex.Expression) -> _
     ):
         body, shows = formula.body, formula.op is ex.PathOp.SOME_RUN
     check_linear(body, query.span)
-    return _Found(shows, _accepted(question, guards.normal_form(body, positive=shows), query.span))
+    return _Result(shows, _accepted(question, guards.normal_form(body, positive=shows), query.span))
 
 
 def _accepted(question: _Question, formula: ex.Expression, span: Span | None) -> Run | None:

@@ -94,7 +94,7 @@ class Candidate(Struct, frozen=True):
         return parse_unit(named) if named else None
 
     @property
-    def says_unit(self) -> bool:
+    def states_unit(self) -> bool:
         """Whether the messages or the name of the field state its unit, maybe as one of several."""
         return self.meaning.sort is Sort.MEASURED or self.unit is not None
 

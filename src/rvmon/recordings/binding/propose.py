@@ -31,7 +31,7 @@ _LARGE = {"rad": 360, "m": 9_000, "degC": 200, "V": 999, "A": 999, "m/s": 999, "
 _WHOLE = 1.5  # a ratio is below this; larger values are per cent
 _TURN = 7  # an angle of at most one turn is below this in radians; larger values are degrees
 
-Found = list[tuple[float, Candidate]]
+Ranked = list[tuple[float, Candidate]]
 Ranges = Mapping[tuple[str, str], Range]
 
 
@@ -59,7 +59,7 @@ def propose(spec: CheckedSpec, source: MessageFile) -> Proposal:
         for candidate in candidates_of(topic, seen[topic.name])
     ]
     types = {name: signal.type for name, signal in spec.signals.items()}
-    found: dict[str, Found] = {}
+    found: dict[str, Ranked] = {}
     wanted = {name: wanted_of(name, type_, topics.values()) for name, type_ in types.items()}
     wanted |= {name: wanted_of(name, None, topics.values()) for name in spec.events}
     for name, target in wanted.items():
@@ -104,7 +104,7 @@ def _has_codes(type_: Type | None, candidate: Candidate) -> bool:
     return type_ is not None and type_.kind is Kind.LABEL and candidate.kind is not Kind.LABEL
 
 
-def _with_values(found: Found, ranges: Ranges, type_: Type | None) -> Found:
+def _with_values(found: Ranked, ranges: Ranges, type_: Type | None) -> Ranked:
     """Drop candidates that are raw, and those without a value unless no others are left."""
     if type_ is not None and type_.unit:
         found = [one for one in found if not _is_raw(one[1], type_.unit, ranges)]
@@ -121,7 +121,7 @@ def _is_raw(candidate: Candidate, unit: str, ranges: Ranges) -> bool:
     return candidate.kind is Kind.INT and max(own.high, -own.low) > _LARGE.get(plain, inf)
 
 
-def _is_idle(found: Found, ranges: Ranges) -> bool:
+def _is_idle(found: Ranked, ranges: Ranges) -> bool:
     """Whether the best candidate is a number that never changes, and another one does change."""
     best, *others = (ranges.get(candidate.key, Range()) for _, candidate in found)
     return best.is_constant and any(own.low != own.high for own in others)
@@ -199,7 +199,7 @@ def _event_lines(fields: Mapping[str, Type], candidate: Candidate) -> Iterator[s
 
 
 def _open_lines(
-    name: str, type_: Type | None, found: Found, near: Sequence[Candidate], ranges: Ranges
+    name: str, type_: Type | None, found: Ranked, near: Sequence[Candidate], ranges: Ranges
 ) -> Iterator[str]:
     what = _described(type_)
     if found:

@@ -88,9 +88,9 @@ def fitting(wanted: Wanted, candidates: Iterable[Candidate]) -> list[tuple[float
         if (_fits_event(wanted, candidate) if type_ is None else _fits(wanted, type_, candidate))
     ]
     scored = [(score, candidate) for candidate in fit if (score := _score(wanted, candidate))]
-    if type_ is not None and type_.unit and any(candidate.says_unit for candidate in fit):
+    if type_ is not None and type_.unit and any(candidate.states_unit for candidate in fit):
         scored = [
-            (score - 0.2 * (not candidate.says_unit), candidate) for score, candidate in scored
+            (score - 0.2 * (not candidate.states_unit), candidate) for score, candidate in scored
         ]
     return sorted(
         scored,

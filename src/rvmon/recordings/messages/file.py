@@ -17,7 +17,7 @@ from rvmon.recordings.messages import Message, Messages
 from rvmon.recordings.messages.fields import arrays_of_names, field_of, getter, part_of
 from rvmon.recordings.messages.rows import Skew, message_rows
 from rvmon.recordings.messages.topic_matching import matched
-from rvmon.recordings.messages.transforms import WithTransforms, pairs_asked, sends_transforms
+from rvmon.recordings.messages.transforms import WithTransforms, requested_pairs, sends_transforms
 from rvmon.recordings.places import local_path
 from rvmon.recordings.rows import Row
 from rvmon.trace.sample import Outage
@@ -133,7 +133,7 @@ class MessageFile:
         source = open_messages(local_path(path), form, self._schema)
         schema = self._schema
         bound = [bound.topic for bound in schema.binding.bounds.values()]
-        pairs = pairs_asked([*bound, *schema.columns.values(), *schema.signals])
+        pairs = requested_pairs([*bound, *schema.columns.values(), *schema.signals])
         if pairs and sends_transforms(source.topics):
             return WithTransforms(source, pairs)
         return source

@@ -68,15 +68,15 @@ class MessageReaders:
         self._by_topic: dict[str, list[tuple[str, Bound]]] = defaultdict(list)
         for name, bound in bounds.items():
             self._by_topic[bound.topic].append((name, bound))
-        self._made: dict[str, list[tuple[Callable[[Any], int] | None, list[Take]]]] = {}
+        self._readers: dict[str, list[tuple[Callable[[Any], int] | None, list[Take]]]] = {}
 
     def take(
         self, topic: Topic, logged: int, content: Any
     ) -> Iterator[tuple[int, dict[str, Value]]]:
         """Yield stamp (ticks) and values of a message for each clock; `logged`: its log stamp."""
-        made = self._made.get(topic.name)
+        made = self._readers.get(topic.name)
         if made is None:
-            made = self._made[topic.name] = self._make(topic)
+            made = self._readers[topic.name] = self._make(topic)
         for stamp, takes in made:
             values: dict[str, Value] = {}
             for take in takes:

@@ -153,7 +153,7 @@ def sends_transforms(topics: Mapping[str, Topic]) -> bool:
     return any(name in topics and topics[name].type in _SENT for name in SOURCES)
 
 
-def pairs_asked(names: Iterable[str]) -> list[tuple[str, str]]:
+def requested_pairs(names: Iterable[str]) -> list[tuple[str, str]]:
     """The pairs of frames requested by topics and names of the form `/tf/OUTER/INNER`.
 
     >>> pairs_asked(["/tf/map/base", "tf.map.base.translation.x", "/odom"])

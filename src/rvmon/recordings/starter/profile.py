@@ -16,7 +16,7 @@ from rvmon.errors import TimeOrderError, TraceError
 from rvmon.recordings import MESSAGE_FORMS
 from rvmon.recordings.batch import NO_UPDATE, UNKNOWN, YES, Batch, Cells, NotPlainError
 from rvmon.recordings.cells import cells_of_values
-from rvmon.recordings.csv_batch import Found, csv_batches
+from rvmon.recordings.csv_batch import Parsed, csv_batches
 from rvmon.recordings.csv_dialect import bare_names, name_and_unit, opened_as_csv
 from rvmon.recordings.csv_rows import read_layout
 from rvmon.recordings.csv_text import CsvText
@@ -81,7 +81,7 @@ def _of_files(paths: Sequence[str], stamps: Stamps | None) -> Shapes:
 
 def _of_csv(path: str, stamps: Stamps | None) -> Shapes:
     with opened_as_csv(path, stamps) as (plain, _):
-        text: CsvText[Found] = CsvText(plain)
+        text: CsvText[Parsed] = CsvText(plain)
         header = text.header()
         others = [name for name in header if stamps is None or name != stamps.column]
         possible = [*others, *(name_and_unit(name)[0] for name in others)]

@@ -207,20 +207,20 @@ class Readings:
         self._word = word
         self._rest = rest
         self._reached = word.reached
-        self._made: dict[tuple[object, ...], Truths] = {}
+        self._truths: dict[tuple[object, ...], Truths] = {}
 
     def reach(self, reached: int) -> None:
         """Evaluate on the prefix known at the instant `reached`; instants must not decrease."""
         self._reached = reached
-        for truths in self._made.values():
+        for truths in self._truths.values():
             truths.reach(reached)
 
     def of(self, captured: Mapping[str, Scalar], *, favour: bool = False) -> Truths:
         """The truth of formulas under captured values; `favour` as in `Truths`."""
         key = (favour, *((name, type(value), value) for name, value in captured.items()))
-        found = self._made.get(key)
+        found = self._truths.get(key)
         if found is None:
-            found = self._made[key] = Truths(self._word, captured, self._rest, favour=favour)
+            found = self._truths[key] = Truths(self._word, captured, self._rest, favour=favour)
             found.reach(self._reached)
         return found
 

@@ -92,7 +92,7 @@ class Margins(Operators[Margin]):
         self._held_time = held
         self._favour = favour
         self._truths = Truths(word, captured)
-        self._found: dict[tuple[int, int, bool], Margin] = {}
+        self._margins: dict[tuple[int, int, bool], Margin] = {}
         self._states: dict[tuple[int, int], Margin] = {}
 
     def required(self, formula: rv.Formula, i: int) -> Range:
@@ -101,10 +101,10 @@ class Margins(Operators[Margin]):
 
     def _required(self, formula: rv.Formula, i: int, positive: bool) -> Margin:
         key = (id(formula), i, positive)
-        if key not in self._found:
+        if key not in self._margins:
             inside = i >= self._first
-            self._found[key] = self._margin(formula, i, positive) if inside else _always(ANY)
-        return self._found[key]
+            self._margins[key] = self._margin(formula, i, positive) if inside else _always(ANY)
+        return self._margins[key]
 
     def _margin(self, formula: rv.Formula, i: int, positive: bool) -> Margin:
         if is_composed(formula):
