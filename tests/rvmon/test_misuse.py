@@ -143,6 +143,7 @@ ONE_TEXT = "expected names, such as ['{}'], found one text"
             RvmonError,
             "columns='gap=g': expected columns by name",
         ),
+        (lambda spec: spec.evaluate([{"t": 0, "gap": 1.0}]), TraceError, "a list of rows by name"),
         # Specifications and constants are text.
         (
             lambda _: rvmon.loads(b"spec door"),

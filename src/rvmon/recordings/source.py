@@ -154,6 +154,12 @@ def _of_columns_or_lines(
         from rvmon.recordings.recording import FileRecording
 
         return FileRecording(one_recording(str(trace)), schema, ordered=ordered)
+    first = listed[0]
+    if isinstance(first, Mapping) and any(isinstance(cell, float | int) for cell in first.values()):
+        raise TraceError(
+            "expected columns or (t, values) pairs, found a list of rows by name: give pairs, "
+            'such as `[(row.pop("t"), row) for row in rows]`, or a data frame of them'
+        )
     from rvmon.recordings.table_recording import TableRecording
 
     if columns_by_name(listed[0]) is not None:
