@@ -76,7 +76,7 @@ class Rvmon:
         if kind == "evaluate":
             return lambda: spec.evaluate(laid, time="t_ns").attempts
         if kind == "offline":
-            return lambda: [] if len(spec.robustness(laid, time="t_ns").streams["R1"]) else [None]
+            return lambda: spec.robustness(laid, time="t_ns").streams["R1"].low[:0]
         if kind in ("stream", "attempt"):
             measure = spec.robustness_monitor(streams=kind == "stream").step_ns
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from rvmon.recordings.batch import Batch
 
-_ROWS = 4096
+_ROWS = 2048
 """Rows measured before their figures are collected, so that these fit the processor's cache."""
 
 
@@ -93,7 +93,6 @@ class _Run:
         if isinstance(piece, Sample):
             self._run.take(piece)
         else:
-            self._recorded.expect(len(piece.times))
             for first in range(0, len(piece.times), _ROWS):
                 self._run.take(piece.cut(first, min(first + _ROWS, len(piece.times))))
                 self._recorded.add(self._run.core.margins())
@@ -119,30 +118,31 @@ MARGIN = np.dtype(
 
 
 class _Positions:
-    """The figures of the positions of a requirement, in arrays with room for more."""
+    """The figures of the positions of a requirement, in pieces with one memory for equal columns.
+
+    Bounds differ only where input is unknown, or the end of the trace is near. Memory that is
+    written for the first time is a good part of the cost.
+    """
 
     def __init__(self) -> None:
-        self._arrays = [np.empty(0, MARGIN[name]) for name in _COLUMNS]
-        self._count = 0
+        self._pieces: list[list[bytearray]] = []
 
-    def add(self, margins: NDArray[Any], expected: int) -> None:
-        """Add figures; about `expected` are to be expected in all."""
-        count = self._count + len(margins)
-        if count > len(self._arrays[0]):
-            self._enlarge(max(expected, count + count // 8))
-        for array, name in zip(self._arrays, _COLUMNS, strict=True):
-            array[self._count : count] = margins[name]
-        self._count = count
-
-    def _enlarge(self, room: int) -> None:
-        for place, array in enumerate(self._arrays):
-            # Memory that is never written to costs nothing.
-            self._arrays[place] = np.empty(room, array.dtype)
-            self._arrays[place][: self._count] = array[: self._count]
+    def add(self, margins: NDArray[Any]) -> None:
+        low = margins["low"]
+        known = np.array_equal(low, margins["high"]) and np.array_equal(low, margins["kept"])
+        names = _COLUMNS[:2] if known else _COLUMNS
+        if not self._pieces or len(self._pieces[-1]) != len(names):
+            self._pieces.append([bytearray() for _ in names])
+        for column, name in zip(self._pieces[-1], names, strict=True):
+            column += margins[name].tobytes()
 
     def stream(self) -> Stream:
         """The figures added so far."""
-        return Stream(*(array[: self._count] for array in self._arrays))
+        pieces = []
+        for times, *bounds in self._pieces:
+            columns = [np.frombuffer(one, np.float64) for one in bounds]
+            pieces.append((np.frombuffer(times, np.int64), *(columns * 3)[:3]))
+        return Stream(pieces)
 
 
 class RecordedMargins:
@@ -153,11 +153,6 @@ class RecordedMargins:
         self._attempts: dict[Key, Robustness] = {}
         self._doubtful: dict[Key, Robustness] = {}
         self._positions: dict[int, _Positions] = {}
-        self._expected = 0
-
-    def expect(self, rows: int) -> None:
-        """Expect the positions of `rows` more rows, for which arrays then have room."""
-        self._expected += rows
 
     def add(self, figures: bytes) -> None:
         """Add figures, given as the bytes of an array of dtype `MARGIN`."""
@@ -170,7 +165,7 @@ class RecordedMargins:
         numbers = np.unique(margins["requirement"]).tolist() if several else [0]
         for number in numbers if len(margins) else ():
             of_requirement = margins[margins["requirement"] == number] if several else margins
-            self._positions.setdefault(number, _Positions()).add(of_requirement, self._expected)
+            self._positions.setdefault(number, _Positions()).add(of_requirement)
 
     def _add_attempts(self, margins: NDArray[Any]) -> None:
         for _, low, high, kept, requirement, number, in_doubt, _ in margins.tolist():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, overload
 
 from msgspec import Struct
@@ -81,21 +82,45 @@ class Stream(Sequence[tuple[int, Robustness]]):
     """A sequence of figures held as arrays; each object is made on access.
 
     Args:
-        times: int64[n] ticks.
-        low: float64[n], as in `Robustness`.
-        high: float64[n].
-        kept: float64[n].
+        pieces: the sequence in pieces, each the arrays `times`, `low`, `high` and `kept`.
     """
 
-    def __init__(self, times: Any, low: Any, high: Any, kept: Any) -> None:
-        self.times, self.low, self.high, self.kept = times, low, high, kept
+    def __init__(self, pieces: Sequence[Sequence[Any]]) -> None:
+        self._pieces = pieces
+        self._length = sum(len(piece[0]) for piece in pieces)
+
+    @cached_property
+    def times(self) -> Any:
+        """int64[n] ticks."""
+        return self._joined(0)
+
+    @cached_property
+    def low(self) -> Any:
+        """float64[n], as in `Robustness`."""
+        return self._joined(1)
+
+    @cached_property
+    def high(self) -> Any:
+        """float64[n], as in `Robustness`."""
+        return self._joined(2)
+
+    @cached_property
+    def kept(self) -> Any:
+        """float64[n], as in `Robustness`."""
+        return self._joined(3)
+
+    def _joined(self, column: int) -> Any:
+        import numpy as np
+
+        return np.concatenate([piece[column] for piece in self._pieces])
 
     def __len__(self) -> int:
-        return len(self.times)
+        return self._length
 
     def __iter__(self) -> Iterator[tuple[int, Robustness]]:
-        figures = map(Robustness, self.low.tolist(), self.high.tolist(), self.kept.tolist())
-        return zip(self.times.tolist(), figures, strict=True)
+        for times, *bounds in self._pieces:
+            figures = map(Robustness, *(one.tolist() for one in bounds))
+            yield from zip(times.tolist(), figures, strict=True)
 
     @overload
     def __getitem__(self, place: int) -> tuple[int, Robustness]: ...
@@ -106,7 +131,7 @@ class Stream(Sequence[tuple[int, Robustness]]):
     def __getitem__(self, place: int | slice) -> tuple[int, Robustness] | Stream:
         columns = [column[place] for column in (self.times, self.low, self.high, self.kept)]
         if isinstance(place, slice):
-            return Stream(*columns)
+            return Stream([columns])
         t, *figures = (column.item() for column in columns)
         return t, Robustness(*figures)
 

@@ -61,10 +61,17 @@ def test_without_requirements_there_is_nothing_to_measure():
 
 
 def test_a_stream_of_arrays_is_a_sequence():
-    """One figure is picked like any other element, several are a stream."""
-    text = "time sampled\nsignal x : real\nrequirement R\n  upon start then immediately x > 1\n"
-    spec = rvmon.loads(text)
-    stream = spec.robustness(arrays_of([0, 1, 2], {"x": [1.0, 2.0, 3.0]})).streams["R"]
-    assert len(stream) == 3
+    """Its bounds are equal but where input is unknown, and near the end of the trace."""
+    text = "time sampled\nsignal x : real\nrequirement R\n  upon start then within 1 ns x > 1\n"
+    trace = arrays_of(range(6), {"x": [1.0, 2.0, np.nan, 3.0, 4.0, 6.0]})
+    stream = rvmon.loads(text).robustness(trace).streams["R"]
+    inf = np.inf
+    assert list(stream.times) == list(range(6))
+    assert list(stream.low) == [1.0, 1.0, 2.0, 3.0, 5.0, 5.0]
+    assert list(stream.high) == [1.0, inf, inf, 3.0, 5.0, inf]
+    assert list(stream.kept) == [1.0, 1.0, 2.0, 3.0, 5.0, 5.0]
+    figures = [(one.low, one.high, one.kept) for _, one in stream]
+    assert figures == list(zip(stream.low, stream.high, stream.kept, strict=True))
+    assert len(stream) == 6
     assert list(stream[1:]) == list(stream)[1:]
     assert stream[-1] == list(stream)[-1]
