@@ -68,7 +68,7 @@ def grouped(
         if column.name not in read:
             rest.setdefault(column.shape.source, []).append(column)
     for source, columns in rest.items():
-        title = source or ("what nothing reads" if requirements else "")
+        title = source or ("not read by any requirement" if requirements else "")
         yield title, sorted(columns, key=is_constant)
 
 
