@@ -57,7 +57,7 @@ class Arrivals:
     def ask(self, attempt: Attempt) -> None:
         """Start to look for the response that a failed attempt awaited, from its deadline on.
 
-        `found` gets an entry for the attempt, `None` if it awaited nothing. It gets none, and the
+        `arrived` gets an entry for the attempt, `None` if it awaited nothing. It gets none, and the
         recording has to be searched again, if the deadline lies in pieces already taken, if the
         formula is not `is_of_moment`, or if the requirement captures values.
         """

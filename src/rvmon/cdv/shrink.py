@@ -249,17 +249,12 @@ def regression_test(campaign: Campaign, job: Job, shrunk: Shrunk[Test]) -> Test:
     only = job.robot if len(campaign.robots) > 1 else test.robot
     return structs.replace(
         shrunk.test,
-        name=small_name(test),
+        name=f"{test.name}-small",
         text=f"the smallest test in which {failure}, as in {test.name}",
         robot=only,
         expected=expected,
         reaches={},
     )
-
-
-def small_name(test: Test) -> str:
-    """The name for the smallest test with the failure of this one."""
-    return f"{test.name}-small"
 
 
 def save_regression(campaign: Campaign, test: Test, folder: Path) -> tuple[Path, Path]:

@@ -60,14 +60,14 @@ def _decide(network: Network, arguments: argparse.Namespace, budget: Budget) -> 
         for extended, query in chosen_queries(network, arguments.query):
             match query.formula:
                 case Chance() | Mean():
-                    going = Meter(budget, watch).continues
+                    going = Meter(budget, watch).look
                     one = sample(extended, query, seed=arguments.seed, watch=going)
                     failed |= bool(one.margin) and not one.holds
                     data["simulated"].append(describe.sampled_data(one))
                     if in_words:
                         _print_sampled(one)
                 case Simulation():
-                    going = Meter(budget, watch).continues
+                    going = Meter(budget, watch).look
                     drawn = trajectories(extended, query, seed=arguments.seed, watch=going)
                     data["simulated"].append(describe.simulation_data(query, drawn))
                     if in_words:

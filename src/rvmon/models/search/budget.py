@@ -94,7 +94,7 @@ class Meter:
         states = self._budget.states
         return -1 if states is None else max(0, states - self.visited)
 
-    def look(self, visited: int, waiting: int) -> bool:
+    def look(self, visited: int, waiting: int = 0) -> bool:
         """Check time and memory and report progress, for a running search; whether to continue."""
         budget, seconds = self._budget, self.seconds
         if budget.seconds is not None and seconds > budget.seconds:
@@ -104,10 +104,6 @@ class Meter:
         elif self._watch is not None:
             self._watch(Progress(self.visited + visited, waiting, seconds))
         return not self.stopped
-
-    def continues(self, runs: int) -> bool:
-        """Whether one more run may be simulated after `runs` of them."""
-        return self.look(runs, 0)
 
     def add(self, visited: int, stored: int) -> None:
         """Add the counts of a completed search."""
