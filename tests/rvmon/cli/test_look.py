@@ -105,14 +105,6 @@ def test_numbers_of_any_size_are_drawn(most, put, says):
     assert {point.split()[1] for point in curve.split("L")} == {"3.0", "20.0", "37.0"}
 
 
-def test_null_is_no_label_and_a_name_without_any_value_is_left_out(put, says):
-    rows = ['{"t": 0, "mode": "blue", "gone": null}', '{"t": 1, "mode": null}']
-    rows += ['{"t": 2, "mode": "red"}']
-    told = " ".join(says(0, "look", put("null.jsonl", "\n".join(rows))).out.split())
-    assert "mode label blue, red" in told
-    assert "left out: gone: no value in the recording" in told
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("odd", ["word", "1" * 100_000 + "x", "1.5\n2.5"])
 def test_the_kind_of_a_column_depends_on_its_last_cell_too(odd, put, says):
@@ -123,14 +115,18 @@ def test_the_kind_of_a_column_depends_on_its_last_cell_too(odd, put, says):
 
 
 @each(
-    ("number", "code", "told"),
+    ("values", "code", "told"),
     [
-        (2**63 + 5, 0, "id real always 9.22337204e+18"),
-        (10**400, 2, "large.jsonl: line 1: field `id`"),
+        # `null` is no label.
+        (['"blue"', "null", '"red"'], 0, "x label blue, red"),
+        (["null"], 2, "`x`: no value in the recording"),
+        # An integer of more than 64 bits is read as a double.
+        ([2**63 + 5] * 3, 0, "x real always 9.22337204e+18"),
+        ([10**400], 2, "a.jsonl: line 1: field `x`"),
     ],
 )
-def test_an_integer_of_more_than_64_bits_is_read_as_a_double(number, code, told, put, says):
-    path = put("large.jsonl", "".join(f'{{"t": {t}, "id": {number}}}\n' for t in range(3)))
+def test_a_name_is_described_by_its_values(values, code, told, put, says):
+    path = put("a.jsonl", "".join(f'{{"t": {t}, "x": {x}}}\n' for t, x in enumerate(values)))
     assert told in " ".join("".join(says(code, "look", path)).split())
 
 
