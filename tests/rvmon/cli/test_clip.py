@@ -179,13 +179,13 @@ def test_a_pipe_is_refused_by_clip_and_reported_by_run(base, says):
     assert "R2-1" in next(base.glob("page*/a.html")).read_text()
 
 
-def test_late_rows_are_in_the_piece(base, clip):
+def test_late_rows_are_in_the_piece_or_carried_to_its_start(base, clip):
     (base / "base.rv").write_text(SPEC.replace("spec base\n", "spec base\nmax delay 5 s\n"))
     (base / "a.csv").write_text(
-        "t,speed,ready,go\n0,0.5,false,\n9,0.4,,\n8,0.3,,\n12,,,\n10,,,1\n20,,,\n"
+        "t,speed,ready,go\n0,0.5,false,\n9,0.4,,\n8,0.3,,\n12,,,\n9.2,0.6,,\n10,,,1\n20,,,\n"
     )
     clip(0, "R1#1 --before 0.5s --after 2s")
-    assert (base / "b.csv").read_text() == "t,speed,ready,go\n9.5,0.4,false,\n12,,,\n10,,,1\n"
+    assert (base / "b.csv").read_text() == "t,speed,ready,go\n9.5,0.6,false,\n12,,,\n10,,,1\n"
 
 
 def test_a_bag_is_not_replaced(base, says):

@@ -254,6 +254,14 @@ def test_samples_within_the_lag_are_put_in_order_and_later_ones_lost():
     assert "it exceeds the allowed delay" in status.refusal
 
 
+@each(("closed_at", "expected"), [(4, "I"), (4.1, "F")])
+def test_closing_does_not_pass_deadlines_within_the_lag(closed_at, expected):
+    door = Door(lag_ns=2 * S)
+    door.hears(0, knock=True)
+    door.clock.set_ns(round(closed_at * S))
+    assert door.driver.close()[""][0].verdicts["D1"] == expected
+
+
 def test_a_clock_that_goes_back_starts_a_new_run():
     """A simulation was restarted. The report of the first run has the reason; both runs count."""
     ended = []
