@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any, TextIO
 
-from rvmon.texts import shown_line
+from rvmon.texts import escaped_line
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,16 +144,16 @@ def snippet(
     underline = " " * columns_of(head) + mark * max(columns_of(body), 1)
     return "\n".join(
         (
-            f"{gutter}{arrow} {shown_line(span.source.name)}:{number}:{span.column}",
+            f"{gutter}{arrow} {escaped_line(span.source.name)}:{number}:{span.column}",
             f"{gutter} |",
             f"{number:>{digits}} | {head}{body}{tail}".rstrip(),
-            f"{gutter} | {underline}{' ' + shown_line(remark) if remark else ''}",
+            f"{gutter} | {underline}{' ' + escaped_line(remark) if remark else ''}",
         )
     )
 
 
 def _shown(text: str) -> str:
-    return shown_line(text.rstrip("\r").replace("\t", " "))
+    return escaped_line(text.rstrip("\r").replace("\t", " "))
 
 
 def columns_of(text: str) -> int:
@@ -208,13 +208,13 @@ def _concise(diagnostic: Diagnostic) -> str:
     place = ""
     if diagnostic.spans:
         span = diagnostic.spans[0].span
-        place = f"{shown_line(span.source.name)}:{span.line}:{span.column}: "
+        place = f"{escaped_line(span.source.name)}:{span.line}:{span.column}: "
     fix = f" (help: {_one_line(diagnostic.help)})" if diagnostic.help else ""
     return f"{place}{_heading(diagnostic)}{fix}"
 
 
 def _one_line(text: str) -> str:
-    return shown_line(text.replace("\n", " "))
+    return escaped_line(text.replace("\n", " "))
 
 
 def _plain(diagnostic: Diagnostic) -> dict[str, Any]:

@@ -22,7 +22,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from rvmon.texts import shown
+from rvmon.texts import escaped
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -34,7 +34,7 @@ class RvmonError(Exception):
     """Base of all exceptions of rvmon; `str` of it contains no terminal escapes."""
 
     def __str__(self) -> str:
-        return shown(super().__str__())
+        return escaped(super().__str__())
 
 
 class DiagnosedError(RvmonError, ValueError):
@@ -80,7 +80,7 @@ class UnknownNameError(RvmonError, KeyError):
     """A name does not exist; the message lists the existing ones."""
 
     def __str__(self) -> str:
-        return shown(str(self.args[0])) if self.args else ""
+        return escaped(str(self.args[0])) if self.args else ""
 
 
 class SnapshotError(RvmonError, ValueError):

@@ -116,42 +116,42 @@ _STEERS_JSON = re.compile(
 )
 
 
-def shown(text: str) -> str:
+def escaped(text: str) -> str:
     r"""The text with control and formatting characters written as escapes.
 
     Names, cells, labels, texts and file names may contain terminal escapes or marks that reverse
     the direction of writing, so all output for people passes through this function. Line ends and
     all kinds of spaces stay.
 
-    >>> print(shown("\x1b[31mred\x9b0m \u202eor not"))
+    >>> print(escaped("\x1b[31mred\x9b0m \u202eor not"))
     \x1b[31mred\x9b0m \u202eor not
     """
     if text.replace("\n", "").isprintable():
         return text
-    return "".join(map(_shown, text))
+    return "".join(map(_escaped, text))
 
 
-def shown_line(text: str) -> str:
-    r"""The result of `shown` on one line: line ends are written as escapes, too.
+def escaped_line(text: str) -> str:
+    r"""The result of `escaped` on one line: line ends are written as escapes, too.
 
-    >>> print(shown_line("one\ntwo"))
+    >>> print(escaped_line("one\ntwo"))
     one\ntwo
     """
-    return shown(text).replace("\n", r"\n")
+    return escaped(text).replace("\n", r"\n")
 
 
-def shown_json(text: str) -> str:
+def escaped_json(text: str) -> str:
     r"""Equivalent JSON text, in which characters that would control a terminal are JSON escapes.
 
-    >>> print(shown_json('"\x9b0m"'))
+    >>> print(escaped_json('"\x9b0m"'))
     "\u009b0m"
     """
     if (text.isascii() and "\x7f" not in text) or text.isprintable():
         return text
-    return _STEERS_JSON.sub(lambda shown: f"\\u{ord(shown[0]):04x}", text)
+    return _STEERS_JSON.sub(lambda char: f"\\u{ord(char[0]):04x}", text)
 
 
-def _shown(char: str) -> str:
+def _escaped(char: str) -> str:
     if char == "\n" or char.isprintable() or unicodedata.category(char) == "Zs":
         return char
     return ascii(char)[1:-1]
@@ -163,7 +163,7 @@ def quoted(text: str) -> str:
     >>> print(quoted('say "\\x1b"'))
     "say \"\\x1b\""
     """
-    plain = shown(text).replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
+    plain = escaped(text).replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
     return f'"{plain}"'
 
 
@@ -327,10 +327,10 @@ def tree_of(directory: Path) -> ImportTree:
 
 
 def shorten(text: str, width: int = 40) -> str:
-    """The result of `shown_line`, cut to `width` characters.
+    """The result of `escaped_line`, cut to `width` characters.
 
     >>> shorten("a" * 50, 5)
     'aaaa…'
     """
-    line = shown_line(text[: width + 1])
+    line = escaped_line(text[: width + 1])
     return line if len(line) <= width else line[: width - 1] + "…"

@@ -39,7 +39,7 @@ from rvmon.models.uppaal_xml import uppaal_xml
 from rvmon.report.html import component, data, e, table_html
 from rvmon.report.junit import junit_xml
 from rvmon.report.verdict_table import RunGroup, VerdictTable, table_latex, tables_csv
-from rvmon.texts import quoted, shown, shown_json, shown_line
+from rvmon.texts import escaped, escaped_json, escaped_line, quoted
 from rvmon.trace.sample import Health, HealthKind
 from rvmon.verdicts import Verdict
 from rvmon.verdicts.report import Report, report_of
@@ -95,14 +95,14 @@ class Documents:
         text = junit_xml([self.report], self.spec, [(name, name) for name in self.names])
         root = ET.fromstring(text.encode())  # noqa: S314 - written by our own writer a line above
         cases = [case.get("name") for case in root.iter("testcase")]
-        ids = [shown(name) for name in self.names]
+        ids = [escaped(name) for name in self.names]
         return _calm(text) and cases == ids + ["recording"] * len(ids)
 
     def csv(self) -> bool:
         """Tables as CSV in which no cell is a formula."""
         rows = list(csv.reader(io.StringIO(tables_csv({self.names[0]: self.table}), newline="")))
         ids = [row[2] for row in rows[1 : len(self.names) + 1]]
-        texts = [shown_line(name) for name in self.names]
+        texts = [escaped_line(name) for name in self.names]
         formulas = [cell for row in rows for cell in row if cell.startswith(tuple("=+-@\t\r"))]
         return not formulas and ids == [f"'{one}" if one[0] in "=+-@" else one for one in texts]
 
@@ -123,7 +123,7 @@ class Documents:
         return (
             "<" not in text
             and _calm(text)
-            and json.loads(text) == {"panels": {shown(name): [shown(name)] for name in self.names}}
+            and json.loads(text) == {"panels": {name: [name] for name in map(escaped, self.names)}}
         )
 
     def _html_page(self) -> str:
@@ -143,7 +143,7 @@ class Documents:
         text = uppaal_xml(replace(network, title=self.names[0], queries=tuple(queries)))
         root = ET.fromstring(text.encode())  # noqa: S314 - written by our own writer a line above
         found = [comment.text for comment in root.iter("comment")]
-        return _calm(text) and found == [shown(name) for name in self.names]
+        return _calm(text) and found == [escaped(name) for name in self.names]
 
     def messages(self) -> bool:
         """Errors, and findings in all formats."""
@@ -152,7 +152,8 @@ class Documents:
             for n in self.names
         ]
         errors = [str(kind(name)) for kind in (RvmonError, UnknownNameError) for name in self.names]
-        texts = [render_full(found), render_concise(found), shown_json(render_json(found)), *errors]
+        as_json = escaped_json(render_json(found))
+        texts = [render_full(found), render_concise(found), as_json, *errors]
         read = [finding["file"] for finding in json.loads(texts[2])]
         lines = len(texts[1].split("\n"))
         return _calm("".join(texts)) and read == list(self.names) and lines == len(self.names)
@@ -207,7 +208,7 @@ def written(names: Names, folder: Path) -> tuple[Names, str, str, str, str]:
         of timed automata with names as title, labels and remarks of queries.
     """
     ids = [name for name in names if "\r" not in name]  # it would end a line
-    cell = next(name for name in ids if name == shown_line(name) or "\x00" not in name)
+    cell = next(name for name in ids if name == escaped_line(name) or "\x00" not in name)
     file = re.sub(r"[/\x00]", "_", ids[-1])[:60]
     ends = (".rv", ".csv", ".broken.csv", ".ta")
     spec, trace, broken, model = (str(folder / (file + end)) for end in ends)

@@ -7,24 +7,24 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.tools.hostile import STEERING, hostile_names
 
-from rvmon.texts import percent, percent_text, shown, shown_json, shown_line
+from rvmon.texts import escaped, escaped_json, escaped_line, percent, percent_text
 
 
 @pytest.mark.slow
 def test_no_control_character_is_left():
     for name in hostile_names(5000):
-        assert not STEERING.search(shown(f"{name}\n"))
-        assert "\n" not in shown_line(f"{name}\n")
+        assert not STEERING.search(escaped(f"{name}\n"))
+        assert "\n" not in escaped_line(f"{name}\n")
         for text in (json.dumps(name), json.dumps(name, ensure_ascii=False)):
-            assert not STEERING.search(shown_json(text))
-            assert json.loads(shown_json(text)) == name
+            assert not STEERING.search(escaped_json(text))
+            assert json.loads(escaped_json(text)) == name
 
 
 def test_printable_text_of_any_script_and_shown_text_stay_unchanged():
     text = "Größe 3\u00a0m: 名前\u3000🤖\n"
-    assert shown(text) == text
+    assert escaped(text) == text
     for name in hostile_names(1000):
-        assert shown(shown(name)) == shown(name)
+        assert escaped(escaped(name)) == escaped(name)
 
 
 @pytest.mark.slow

@@ -15,7 +15,7 @@ from rvmon.cdv.sequential_test import Decision
 from rvmon.coverage import STATES, Ending
 from rvmon.errors import UnknownNameError
 from rvmon.report.junit import add_suite, as_text, case_of
-from rvmon.texts import counted, shown, shown_line
+from rvmon.texts import counted, escaped, escaped_line
 from rvmon.verdicts import Verdict
 
 RobotRequirement = tuple[str, str]
@@ -136,7 +136,7 @@ def judge_test(
     wrong: list[str] = []
     known: list[str] = []
     if outcome.ending is not Ending.COMPLETED and test.mutation is None:
-        wrong.append(f"{outcome.ending}: {shown_line(str(outcome.error))}")
+        wrong.append(f"{outcome.ending}: {escaped_line(str(outcome.error))}")
     accepted = accepted_failures(played, expected)
     if outcome.verdicts:
         wrong.extend(differences(test.expected, outcome.verdicts))
@@ -285,7 +285,7 @@ def junit_xml(campaign: str, judgement: CampaignJudgement) -> str:
     A test that is wrong is a failure, or an error if it crashed, hung or was lost. A test that
     fails as expected is skipped, with the reason. A campaign that was cut short has an error.
     """
-    root = ET.Element("testsuites", name=shown(campaign))
+    root = ET.Element("testsuites", name=escaped(campaign))
     groups: dict[str, list[TestJudgement]] = {}
     for test in judgement.tests:
         job = test.played.job

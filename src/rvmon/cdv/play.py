@@ -23,7 +23,7 @@ from rvmon.cdv.test import TestError, blamed
 from rvmon.coverage import Ending, Hits
 from rvmon.errors import RvmonError
 from rvmon.execute import Ended, parallel
-from rvmon.texts import shown_line
+from rvmon.texts import escaped_line
 from rvmon.verdicts import Verdict
 
 if TYPE_CHECKING:
@@ -184,7 +184,7 @@ def outcome_of(recorded: Recorded) -> Outcome:
 def _reasons(report: Report) -> dict[str, str]:
     failed = (name for name, verdict in report.verdicts.items() if verdict is Verdict.FAIL)
     first = {name: next(report.of(name, Verdict.FAIL), None) for name in failed}
-    return {name: shown_line(str(attempt)) for name, attempt in first.items() if attempt}
+    return {name: escaped_line(str(attempt)) for name, attempt in first.items() if attempt}
 
 
 INTERRUPTED = "interrupted"

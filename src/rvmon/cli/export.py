@@ -11,7 +11,7 @@ from rvmon.cli.options import chosen_ids, constants_of, model_constants_of, refu
 from rvmon.cli.output import say, warn
 from rvmon.errors import RvmonError
 from rvmon.files import write_file
-from rvmon.texts import shown_json
+from rvmon.texts import escaped_json
 
 if TYPE_CHECKING:
     from rvmon.session import Spec
@@ -109,5 +109,5 @@ def _automata(spec: Spec, ids: Sequence[str] | None, form: str) -> str:
         import msgspec
 
         encoded = msgspec.json.format(msgspec.json.encode(made), indent=1)
-        return f"{shown_json(encoded.decode())}\n"
+        return f"{escaped_json(encoded.decode())}\n"
     return "".join(map(str, made))

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from itertools import islice
 from typing import TYPE_CHECKING, TypeVar
 
-from rvmon.texts import shown, shown_json
+from rvmon.texts import escaped, escaped_json
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -28,12 +28,12 @@ _SPELLED = str.maketrans(
 
 def say(text: str = "", *, end: str = "\n", flush: bool = False) -> None:
     """Print a text for people."""
-    print(shown(text), end=end, flush=flush)
+    print(escaped(text), end=end, flush=flush)
 
 
 def say_json(text: str) -> None:
     """Print JSON text."""
-    print(shown_json(text))
+    print(escaped_json(text))
 
 
 def spell() -> None:
@@ -60,7 +60,7 @@ def rendered(findings: Sequence[Diagnostic]) -> str:
 
 def warn(text: str) -> None:
     """Print a message to standard error."""
-    print(shown(text), file=sys.stderr)
+    print(escaped(text), file=sys.stderr)
 
 
 T = TypeVar("T")
@@ -93,7 +93,7 @@ def bar(what: str, total: float) -> Iterator[Callable[[float], None]]:
             from rich.progress import Progress
 
             progress = Progress(console=_console(), transient=True)
-            progress.add_task(escape(shown(what)), total=total)
+            progress.add_task(escape(escaped(what)), total=total)
             progress.start()
         if progress is not None:
             progress.update(progress.task_ids[0], completed=done)
@@ -121,8 +121,8 @@ def busy(what: str) -> Iterator[Callable[[str], None] | None]:
     if not sys.stderr.isatty():
         yield None
         return
-    with _console().status(shown(what)) as status:
-        yield lambda text: status.update(shown(text))
+    with _console().status(escaped(what)) as status:
+        yield lambda text: status.update(escaped(text))
 
 
 def shown_while_reading(recording: FileRecording, parts: Iterator[T]) -> Iterator[T]:

@@ -12,7 +12,7 @@ from typing import Any, NoReturn, TypeAlias
 
 from rvmon.errors import TraceError
 from rvmon.execute import Shard
-from rvmon.texts import did_you_mean, shown
+from rvmon.texts import did_you_mean, escaped
 from rvmon.trace.time import TICKS_PER_SECOND, TICKS_PER_UNIT, ticks_of_text
 
 Subparsers: TypeAlias = "argparse._SubParsersAction[Parser]"  # the commands of a program
@@ -81,7 +81,7 @@ class Parser(argparse.ArgumentParser):
         formatter = self._get_formatter()
         formatter.add_text(self.epilog)
         text = f"{self.prog}: error: {message}\n{formatter.format_help()}"
-        self.exit(2, f"{shown(text)}{self.prog} --help says more\n")
+        self.exit(2, f"{escaped(text)}{self.prog} --help says more\n")
 
 
 def positive(text: str) -> int:

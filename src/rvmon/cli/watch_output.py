@@ -19,7 +19,7 @@ from rvmon.live import Driver, Judgement, Status
 from rvmon.report.printer import Cell, Printer
 from rvmon.report.wording import MARKS, verdict_text
 from rvmon.session import Spec
-from rvmon.texts import counted, shown
+from rvmon.texts import counted, escaped
 from rvmon.trace.time import NEVER, TICKS_PER_SECOND, format_stamped
 from rvmon.verdicts import Verdict, fold
 
@@ -141,7 +141,7 @@ class View(Output):
 
     def note(self, text: str) -> None:
         """Print a message above the table."""
-        self._console.print(shown(text))
+        self._console.print(escaped(text))
 
     def show(self, driver: Driver) -> None:
         """Update the table, which is at most as high as the terminal."""

@@ -24,7 +24,7 @@ from rvmon.models.network.expressions import (
 from rvmon.models.network.fractions import number_of
 from rvmon.models.network.guards import has_paths
 from rvmon.models.uppaal_names import Names, Thing, function_lines, type_text, updates_text
-from rvmon.texts import quoted, shown, shown_line
+from rvmon.texts import escaped, escaped_line, quoted
 from rvmon.trace.time import TICKS_PER_UNIT
 
 _HEAD = """<?xml version="1.0" encoding="utf-8"?>
@@ -81,7 +81,7 @@ def _channel_priorities(names: Names) -> Iterator[str]:
 
 
 def _declarations(network: nta.Network, names: Names) -> str:
-    lines = [shown_line(f'// network {network.name} "{network.title}"')]
+    lines = [escaped_line(f'// network {network.name} "{network.title}"')]
     if network.unit is not None:
         unit = max((u for u, t in TICKS_PER_UNIT.items() if network.unit % t == 0),
                    key=lambda name: TICKS_PER_UNIT[name])  # fmt: skip
@@ -201,7 +201,7 @@ def _formula(names: Names, formula: nta.QueryFormula) -> str:
 
 def _text(text: str) -> str:
     """The text, escaped for XML."""
-    return escape(shown(text))
+    return escape(escaped(text))
 
 
 _MARKS = {LocationKind.NORMAL: "", LocationKind.URGENT: "U ", LocationKind.COMMITTED: "C "}

@@ -13,7 +13,7 @@ from rvmon.coverage import Group, Item, Subject, TestRecord
 from rvmon.coverage.holes import cross_parts
 from rvmon.language.checked.properties import BinKind
 from rvmon.report.coverage_summary import Summary, not_fine
-from rvmon.texts import shown
+from rvmon.texts import escaped
 
 _CODE = (Subject.STATEMENTS, Subject.BRANCHES)
 _TYPES = {BinKind.GOAL: "bins", BinKind.IGNORE: "ignore", BinKind.ILLEGAL: "illegal"}
@@ -28,18 +28,18 @@ def coverage_ucis(summary: Summary, version: str) -> str:
     """
     now = datetime.now(UTC).isoformat(timespec="seconds")
     root = ET.Element("UCIS", ucisVersion="1.0", writtenBy="rvmon", writtenTime=now)
-    ET.SubElement(root, "sourceFiles", fileName=shown(summary.name), id="1")
+    ET.SubElement(root, "sourceFiles", fileName=escaped(summary.name), id="1")
     records = [entry.record for entry in summary.coverage.entries]
     # The schema demands at least one history node.
     for number, record in enumerate(records or [TestRecord("no test")]):
         ET.SubElement(root, "historyNodes", _history(number, record, version))
     name = ", ".join(summary.coverage.campaigns) or summary.name
-    instance = ET.SubElement(root, "instanceCoverages", name=shown(name), key="0")
+    instance = ET.SubElement(root, "instanceCoverages", name=escaped(name), key="0")
     ET.SubElement(instance, "id", _PLACE)
     covered = ET.SubElement(instance, "covergroupCoverage")
-    group = ET.SubElement(covered, "cgInstance", name=shown(name), key="0")
+    group = ET.SubElement(covered, "cgInstance", name=escaped(name), key="0")
     ET.SubElement(group, "options")
-    place = ET.SubElement(group, "cgId", cgName=shown(name), moduleName=shown(name))
+    place = ET.SubElement(group, "cgId", cgName=escaped(name), moduleName=escaped(name))
     ET.SubElement(place, "cginstSourceId", _PLACE)
     ET.SubElement(place, "cgSourceId", _PLACE)
     functional = [
@@ -60,8 +60,8 @@ def _history(number: int, record: TestRecord, version: str) -> dict[str, str]:
     when = datetime.fromtimestamp((record.when or 0) / 1e9, UTC)
     return {
         "historyNodeId": str(number),
-        "logicalName": shown(record.name),
-        **({"physicalName": shown(record.recording)} if record.recording else {}),
+        "logicalName": escaped(record.name),
+        **({"physicalName": escaped(record.recording)} if record.recording else {}),
         "kind": "HISTORYNODE_TEST",
         "testStatus": "false" if not_fine(record) else "true",
         "cpuTime": f"{record.seconds:.3f}",
@@ -75,14 +75,13 @@ def _history(number: int, record: TestRecord, version: str) -> dict[str, str]:
 
 def _options(parent: ET.Element, group: Group) -> None:
     # UCIS has one goal for all bins of a point. With the greatest, no hole counts as covered.
-    goal = max(item.goal for item in group.items.values())
-    ET.SubElement(
-        parent, "options", weight=str(group.weight), at_least=str(goal), comment=shown(group.title)
-    )
+    goal = str(max(item.goal for item in group.items.values()))
+    weight, comment = str(group.weight), escaped(group.title)
+    ET.SubElement(parent, "options", weight=weight, at_least=goal, comment=comment)
 
 
 def _coverpoint(parent: ET.Element, summary: Summary, group: Group) -> None:
-    point = ET.SubElement(parent, "coverpoint", name=shown(group.name), key="0")
+    point = ET.SubElement(parent, "coverpoint", name=escaped(group.name), key="0")
     _options(point, group)
     for number, (place, item) in enumerate(summary.places(group)):
         one = ET.SubElement(point, "coverpointBin", _bin(summary, place, item))
@@ -93,10 +92,10 @@ def _coverpoint(parent: ET.Element, summary: Summary, group: Group) -> None:
 
 
 def _cross(parent: ET.Element, summary: Summary, group: Group) -> None:
-    cross = ET.SubElement(parent, "cross", name=shown(group.name), key="0")
+    cross = ET.SubElement(parent, "cross", name=escaped(group.name), key="0")
     _options(cross, group)
     for axis in group.axes:
-        ET.SubElement(cross, "crossExpr").text = shown(axis)
+        ET.SubElement(cross, "crossExpr").text = escaped(axis)
     axes: Sequence[Sequence[str]] = [*group.axes.values()]
     for place, item in summary.places(group):
         one = ET.SubElement(cross, "crossBin", _bin(summary, place, item))
@@ -107,7 +106,7 @@ def _cross(parent: ET.Element, summary: Summary, group: Group) -> None:
 
 
 def _bin(summary: Summary, place: int, item: Item) -> dict[str, str]:
-    return {"name": shown(item.name), "key": "0", "type": _TYPES[summary.kind(place, item)]}
+    return {"name": escaped(item.name), "key": "0", "type": _TYPES[summary.kind(place, item)]}
 
 
 def _contents(parent: ET.Element, summary: Summary, place: int) -> None:
@@ -118,4 +117,4 @@ def _remarks(parent: ET.Element, summary: Summary, group: Group, item: Item) -> 
     why = "; ".join(summary.coverage.unreachable.get((group.name, item.name), ()))
     for key, text in (("text", item.text), ("unreachable", why)):
         if text:
-            ET.SubElement(parent, "userAttr", key=key, type="str").text = shown(text)
+            ET.SubElement(parent, "userAttr", key=key, type="str").text = escaped(text)

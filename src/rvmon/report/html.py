@@ -19,7 +19,7 @@ from markupsafe import Markup
 from rvmon.confidence import interval_text
 from rvmon.report.verdict_table import VerdictTable, checked_text
 from rvmon.report.wording import MARKS, verdict_colours
-from rvmon.texts import counted, percent_text, share_text, shown
+from rvmon.texts import counted, escaped, percent_text, share_text
 from rvmon.verdicts import Verdict
 
 if TYPE_CHECKING:
@@ -40,14 +40,14 @@ def e(tag: str, attributes: Mapping[str, object] | None = None, *children: Child
     element = ET.Element(tag)
     for name, value in (attributes or {}).items():
         if value is not None and value is not False:
-            element.set(name, "" if value is True else shown(str(value)))
+            element.set(name, "" if value is True else escaped(str(value)))
     for child in children:
         if isinstance(child, ET.Element):
             element.append(child)
         elif child is not None and len(element):
-            element[-1].tail = (element[-1].tail or "") + shown(child.expandtabs(4))
+            element[-1].tail = (element[-1].tail or "") + escaped(child.expandtabs(4))
         elif child is not None:
-            element.text = (element.text or "") + shown(child.expandtabs(4))
+            element.text = (element.text or "") + escaped(child.expandtabs(4))
     return element
 
 
@@ -83,9 +83,9 @@ def with_code(sentence: str) -> Markup:
     >>> with_code("saw `x < 1` twice")
     Markup('saw <code>x &lt; 1</code> twice')
     """
-    parts = _UNIT.sub("\N{NO-BREAK SPACE}", shown(sentence.expandtabs(4))).split("`")
+    parts = _UNIT.sub("\N{NO-BREAK SPACE}", escaped(sentence.expandtabs(4))).split("`")
     if len(parts) % 2 == 0:  # an odd number of quotes quotes nothing
-        return Markup.escape(shown(sentence))
+        return Markup.escape(escaped(sentence))
     code = Markup("<code>{}</code>").format
     return Markup().join(code(part) if index % 2 else part for index, part in enumerate(parts))
 
@@ -132,15 +132,15 @@ def _finished(value: object) -> object:
         return Markup(to_html(value))  # noqa: S704 - escaped as it is written
     if value is None or isinstance(value, Markup):
         return value or ""
-    return shown(str(value))
+    return escaped(str(value))
 
 
 def _as_shown(value: object) -> object:
     match value:
         case str():
-            return shown(value)
+            return escaped(value)
         case dict():
-            return {shown(key): _as_shown(part) for key, part in value.items()}
+            return {escaped(key): _as_shown(part) for key, part in value.items()}
         case list() | tuple():
             return [_as_shown(part) for part in value]
         case _:

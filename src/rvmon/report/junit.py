@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from rvmon.report.wording import full_reason, without_attempts
-from rvmon.texts import shown
+from rvmon.texts import escaped
 from rvmon.trace.time import format_stamped
 from rvmon.verdicts import Verdict
 from rvmon.verdicts.known_failures import NONE_KNOWN, KnownFailures
@@ -29,7 +29,7 @@ def junit_xml(
     with their reason, since none of them is a pass. A recording that could not be read to its end
     (`broken`) is an error.
     """
-    root = ET.Element("testsuites", name=shown(spec.name))
+    root = ET.Element("testsuites", name=escaped(spec.name))
     for report in reports:
         failures = known.failures(report)
         cases = []
@@ -58,14 +58,14 @@ def case_of(
         reasons: the message, then further lines; at least one if `kind` is given.
         facts: properties, as pairs of name and value; empty ones are left out.
     """
-    case = ET.Element("testcase", name=shown(name))
+    case = ET.Element("testcase", name=escaped(name))
     stated = [(word, fact) for word, fact in facts if fact]
     properties = ET.SubElement(case, "properties") if stated else case
     for word, fact in stated:
-        ET.SubElement(properties, "property", name=shown(word), value=shown(fact))
+        ET.SubElement(properties, "property", name=escaped(word), value=escaped(fact))
     if kind:
-        element = ET.SubElement(case, kind, message=shown(reasons[0]))
-        element.text = shown("\n".join(reasons[1:])) or None
+        element = ET.SubElement(case, kind, message=escaped(reasons[0]))
+        element.text = escaped("\n".join(reasons[1:])) or None
     return case
 
 
@@ -75,11 +75,11 @@ def add_suite(root: ET.Element, name: str, cases: Sequence[ET.Element]) -> None:
         kind: str(sum(case.find(tag) is not None for case in cases))
         for kind, tag in (("failures", "failure"), ("errors", "error"), ("skipped", "skipped"))
     }
-    attributes = {"name": shown(name), "tests": str(len(cases)), **counts}
+    attributes = {"name": escaped(name), "tests": str(len(cases)), **counts}
     suite = ET.SubElement(root, "testsuite", attributes)
     for case in cases:
         # CI servers group cases by `classname`.
-        case.set("classname", shown(name))
+        case.set("classname", escaped(name))
         suite.append(case)
 
 

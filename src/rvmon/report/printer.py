@@ -12,7 +12,7 @@ from itertools import chain, zip_longest
 from typing import TextIO
 
 from rvmon.diagnostics import RESET, columns_of, wants_colour
-from rvmon.texts import shown, shown_line
+from rvmon.texts import escaped, escaped_line
 
 Piece = str | tuple[str, str]  # a text, or a text with its style, which is words of `_CODES`
 Line = list[Piece]  # the pieces of a line
@@ -155,8 +155,8 @@ class Printer:
     def _drawn(self, piece: Piece) -> str:
         text, style = _styled(piece)
         if not (text and style and self._has_colour):
-            return shown(text)
-        return f"\x1b[{';'.join(_CODES[word] for word in style.split())}m{shown(text)}{RESET}"
+            return escaped(text)
+        return f"\x1b[{';'.join(_CODES[word] for word in style.split())}m{escaped(text)}{RESET}"
 
 
 TEXT_WIDTH = 100  # columns of texts written to files
@@ -184,7 +184,7 @@ def _styled(piece: Piece) -> tuple[str, str]:
 
 def _cell(cell: Cell) -> _Styled:
     pieces = cell if isinstance(cell, list) else [cell]
-    return [(shown_line(text), style) for text, style in map(_styled, pieces)]
+    return [(escaped_line(text), style) for text, style in map(_styled, pieces)]
 
 
 def _bold(row: Sequence[Cell]) -> list[_Styled]:

@@ -11,7 +11,7 @@ from msgspec import Struct, field
 from rvmon.confidence import interval, interval_text
 from rvmon.report.printer import Cell, Line, Piece, Printer
 from rvmon.report.wording import MARKS
-from rvmon.texts import shown_line
+from rvmon.texts import escaped_line
 from rvmon.verdicts import Verdict
 
 Counts = Mapping[Verdict, int]  # by verdict, the number of runs
@@ -84,8 +84,8 @@ def _bounds(counts: Sequence[int], runs: int) -> list[str]:
 
 def plain(name: str) -> str:
     """A name that no spreadsheet takes for a formula; an apostrophe is added where needed."""
-    # `shown_line` escapes tabs and line ends, which could also start a formula or end a row.
-    text = shown_line(name)
+    # `escaped_line` escapes tabs and line ends, which could also start a formula or end a row.
+    text = escaped_line(name)
     return f"'{text}" if text.startswith(_FORMULA) else text
 
 
@@ -243,7 +243,7 @@ def escape(text: str) -> str:
     >>> escape("50 % of hand_distance")
     '50 \\% of hand\\_distance'
     """
-    return "".join(_SPECIAL.get(character, character) for character in shown_line(text))
+    return "".join(_SPECIAL.get(character, character) for character in escaped_line(text))
 
 
 def _rows(table: VerdictTable, name: str) -> list[str]:

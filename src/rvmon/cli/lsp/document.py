@@ -23,7 +23,7 @@ from rvmon.language.compile import Compilation, compilation
 from rvmon.language.syntax.expressions import Ident
 from rvmon.language.syntax.items import Declarations, ImportItem, Item, SignalSyntax
 from rvmon.language.syntax.keywords import split_items
-from rvmon.texts import proposed, shown
+from rvmon.texts import escaped, proposed
 
 _WIDTHS = {
     lsp.PositionEncodingKind.Utf8: (0x80, 0x800, 0x10000),
@@ -160,7 +160,7 @@ class Document:
         help_ = f"\nhelp: {finding.help}" if finding.help else ""
         return lsp.Diagnostic(
             where,
-            shown(finding.message + help_),
+            escaped(finding.message + help_),
             _SEVERITIES[finding.severity],
             finding.code,
             _page(finding.code),
@@ -168,7 +168,7 @@ class Document:
             [lsp.DiagnosticTag.Unnecessary] if finding.name in _UNNEEDED else None,
             [
                 lsp.DiagnosticRelatedInformation(
-                    self.location(label.span), shown(label.text) or "with this"
+                    self.location(label.span), escaped(label.text) or "with this"
                 )
                 for label in finding.spans[1:]
             ],
