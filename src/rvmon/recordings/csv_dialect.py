@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import re
+import shlex
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -363,7 +364,7 @@ def bare_names(header: Sequence[str], schema: Schema) -> tuple[list[str], Schema
     for column in header:
         bare, unit = name_and_unit(column)
         name = aliases.get(column, bare)
-        if name in declared:
+        if name in declared and (column in aliases or name not in written):
             _expect_unit(column, name, unit, schema)
         is_time = schema.stamps is None and name in DEFAULT_COLUMNS
         if column in aliases or name in written or not (name in declared or is_time):
@@ -376,12 +377,22 @@ def bare_names(header: Sequence[str], schema: Schema) -> tuple[list[str], Schema
 
 
 def _expect_unit(column: str, name: str, unit: str, schema: Schema) -> None:
-    """Check the unit in the name of a column against the declared one, if both are known units."""
+    """Check the unit in the name of a column against the declared one.
+
+    A text that is not a known unit is accepted only if the user has mapped the column.
+    """
     declared = schema.units.get(name, "")
     try:
         there, wanted = parse_unit(unit), parse_unit(declared)
     except UnknownUnitError:
-        return
+        if not declared or column in schema.aliases:
+            return
+        given = shlex.quote(f"{name}={column}")
+        raise TraceError(
+            f"column `{shorten(column)}`: `{shorten(unit)}` is not a known unit, and `{name}` is "
+            f"declared [{declared}]: if the column is in [{declared}], say so: --map {given}, in "
+            "Python columns=…"
+        ) from None
     if declared and unit and (there.dimension, there.factor) != (wanted.dimension, wanted.factor):
         raise TraceError(
             f"column `{shorten(column)}` is in [{unit}], and `{name}` is declared [{declared}]: "

@@ -138,3 +138,11 @@ def test_unsigned_64_bit_numbers_are_shown(tmp_path, says):
     shown = " ".join(says(0, "look", tmp_path / "a.h5").out.split())
     shown = re.sub(r"…[^0-9]*1 Hz[^0-9]*", "… ", shown)
     assert "9223372036854775808 … 18446744073709551616" in shown
+
+
+def test_the_index_of_a_data_frame_is_left_out_in_silence(tmp_path, says):
+    path = tmp_path / "a.csv"
+    path.write_text(",t,x\n0,0,1\n1,1,2\n")
+    told = says(0, "look", path).out
+    assert "x" in told
+    assert "left out" not in told

@@ -163,6 +163,17 @@ def test_a_unit_in_a_name_is_compared(tmp_path):
     path.write_text("t,V (rad),mode,stop\n0,1,idle,\n")
     with pytest.raises(TraceError, match=r"`V \(rad\)` is in \[rad\], and `speed` is declared"):
         spec.evaluate(path, columns={"speed": "V (rad)"})
+    path.write_text("t,speed,speed [km/h],mode,stop\n0,1,9,idle,\n")
+    assert spec.evaluate(path).end == 0
+
+
+def test_an_unknown_unit_in_a_name_is_not_taken_for_the_declared_one(tmp_path):
+    spec = rvmon.loads(SPEC)
+    path = tmp_path / "a.csv"
+    path.write_text("t,speed [kmh],mode,stop\n0,1,idle,\n")
+    with pytest.raises(TraceError, match=r"`kmh` is not a known unit.*--map 'speed=speed \[kmh"):
+        spec.evaluate(path)
+    assert spec.evaluate(path, columns={"speed": "speed [kmh]"}).end == 0
 
 
 @pytest.mark.parametrize("seed", range(40))

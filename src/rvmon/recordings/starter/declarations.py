@@ -87,8 +87,10 @@ def shapes_seen(seen: Mapping[str, SeenValues]) -> Shapes:
     declared: dict[str, Shape] = {}
     left_out: dict[str, str] = {}
     for name, entry in seen.items():
+        if not name.strip():
+            continue  # the index of a data frame
         shape = _shape(entry)
-        if "`" in name or not name.strip() or not name.isprintable():
+        if "`" in name or not name.isprintable():
             left_out[name] = "its name cannot be written"
         elif isinstance(shape, str):
             left_out[name] = shape
