@@ -6,6 +6,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from tests.tools.bags import write_shop
 from tests.tools.each import each
 
 import rvmon
@@ -21,14 +22,6 @@ requirement R1
   then within T speed < 1
 requirement R2
   always speed < 9
-"""
-BINDING = """
-definitions = ["msgs/shop_msgs/msg/Pick.msg"]
-[bind.speed]
-topic = "/pick"
-value = "x * 2"
-[bind.go]
-topic = "/go"
 """
 
 
@@ -73,15 +66,7 @@ def test_a_reproducer_is_evaluated_and_explained_in_any_folder(
 @pytest.mark.slow
 def test_a_reproducer_contains_bag_binding_and_definitions(base, says):
     pytest.importorskip("rosbags")
-    from tests.tools.bags import DEFINITIONS, START, write_ros2
-
-    sent = [("/go", START, {})]
-    sent += [("/pick", START + t * 10**9, {"id": t, "x": 1.0 if t < 4 else 0.1}) for t in range(9)]
-    write_ros2(base / "bag", sent, "sqlite3")
-    message = base / "msgs" / "shop_msgs" / "msg" / "Pick.msg"
-    message.parent.mkdir(parents=True)
-    message.write_text(DEFINITIONS["shop_msgs/msg/Pick"])
-    (base / "base.toml").write_text(BINDING)
+    write_shop(base)
     assert clip("bag", "--binding", "base.toml") == 0
     needed = {"binding/msgs/shop_msgs/msg/Pick.msg", "recording/bag/metadata.yaml"}
     assert needed <= {*zipfile.ZipFile("a.rvcase").namelist()}

@@ -56,6 +56,29 @@ def drive(*, stops_in_s: float) -> list[Sent]:
     return sent
 
 
+_SHOP = """definitions = ["msgs/shop_msgs/msg/Pick.msg"]
+[bind.speed]
+topic = "/pick"
+value = "x * 2"
+[bind.go]
+topic = "/go"
+"""
+
+
+def write_shop(folder: Path) -> None:
+    """Write a ROS 2 recording `bag`, a binding `base.toml` and the definition of a message.
+
+    Event `go` occurs at the start; signal `speed` is 2 for four seconds, then 0.2.
+    """
+    sent: list[Sent] = [("/go", START, {})]
+    sent += [("/pick", START + t * 10**9, {"id": t, "x": 1.0 if t < 4 else 0.1}) for t in range(9)]
+    write_ros2(folder / "bag", sent, "sqlite3")
+    definition = folder / "msgs" / "shop_msgs" / "msg" / "Pick.msg"
+    definition.parent.mkdir(parents=True)
+    definition.write_text(DEFINITIONS["shop_msgs/msg/Pick"])
+    (folder / "base.toml").write_text(_SHOP)
+
+
 def write_ros1(
     path: Path, sent: Sequence[Sent], types: Types = TYPES, own: Types = NONE, compression: str = ""
 ) -> Path:

@@ -8,6 +8,7 @@ import re
 
 import msgspec
 import pytest
+from tests.tools.bags import write_shop
 
 import rvmon
 from rvmon.cli import main
@@ -115,18 +116,7 @@ def test_an_archive_holds_everything_that_verdicts_follow_from(base, capsys):
 
 def test_a_bag_with_a_binding_is_verified(base, capsys):
     pytest.importorskip("rosbags")
-    from tests.tools.bags import DEFINITIONS, START, write_ros2
-
-    sent = [("/go", START, {})]
-    sent += [("/pick", START + t * 10**9, {"id": t, "x": 1.0 if t < 4 else 0.1}) for t in range(9)]
-    write_ros2(base / "bag", sent, "sqlite3")
-    place = "shop_msgs/msg/Pick.msg"
-    (base / place).parent.mkdir(parents=True)
-    (base / place).write_text(DEFINITIONS["shop_msgs/msg/Pick"])
-    (base / "base.toml").write_text(
-        f'definitions = ["{place}"]\n[bind.speed]\ntopic = "/pick"\nvalue = "x"\n'
-        '[bind.go]\ntopic = "/go"\n'
-    )
+    write_shop(base)
     words = ["run", "specs/base.rv", "bag", "--binding", "base.toml", "--quiet"]
     assert main([*words, "--evidence", "e.zip"]) < 2
     (base / "base.toml").unlink()
