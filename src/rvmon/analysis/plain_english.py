@@ -124,7 +124,8 @@ def in_words(formula: formulas.Formula, *, positive: bool = True) -> str:
         case formulas.Passed(since=since, after=after, strict=strict):
             op = formulas.CompareOp.GT if strict else formulas.CompareOp.GE
             verb = (op if positive else op.denied).wording
-            return f"the time since {since or 'the first instant'} {verb} {format_numeric(after)}"
+            instants = {None: "the first instant", formulas.TRIGGERED: "the trigger"}
+            return f"the time since {instants.get(since, since)} {verb} {format_numeric(after)}"
         case _:
             assert_never(formula)
 

@@ -49,6 +49,12 @@ def test_measures_and_truth_values_are_put_into_words(put, says, body, said):
     assert "`upon`" not in text
 
 
+def test_the_instant_of_the_trigger_is_called_so(put, says):
+    text = f"{SPEC}signal d : real [s]\nrequirement W\n  upon knock then within (d) closed\n"
+    words = " ".join(says(0, "explain", put("s.rv", text), "W").out.split())
+    assert "closed is true and the time since the trigger is at most `within`" in words
+
+
 @pytest.mark.slow
 def test_all_requirements_fit_80_columns(put, says):
     text = says(0, "explain", put("door.rv", SPEC)).out
