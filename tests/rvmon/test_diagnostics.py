@@ -51,7 +51,7 @@ def test_json_has_a_line_for_each_finding():
     assert json.loads(render_json([])) == []
 
 
-def test_nothing_steers_the_terminal():
+def test_escapes_do_not_reach_the_terminal():
     place = (Label(Span(Source("a\x1b[2J.rv", "\x1b[31m"), 0, 5)),)
     found = Diagnostic("RV001", "syntax", Severity.ERROR, "found `\x1b`", place)
     for text in (render_full([found]), render_concise([found]), render_json([found])):

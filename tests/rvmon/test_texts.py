@@ -41,6 +41,6 @@ def test_only_none_is_0_percent_and_only_all_is_100_percent(whole, data):
     assert abs(percent(part, whole) - 100 * part / whole) <= 0.1
 
 
-def test_no_items_are_all_covered():
+def test_a_share_of_nothing_is_100_percent():
     assert percent(0, 0) == 100
     assert percent_text(0, 0) == "100 %"

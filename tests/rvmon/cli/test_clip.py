@@ -90,7 +90,7 @@ def test_the_piece_its_carried_values_and_its_verdict_are_reported(base, clip):
     ]
 
 
-def test_a_last_line_without_an_end_stays_open_in_the_piece(base, clip):
+def test_an_unfinished_last_line_leaves_the_verdict_open_in_the_piece(base, clip):
     (base / "a.csv").write_text("\n".join(UNENDED))
     clip(0, "R2")
     assert rvmon.load("base.rv").evaluate("b.csv").verdicts["R2"] == "I"

@@ -189,7 +189,7 @@ def test_a_conflict_of_goals_changes_no_database(door, tmp_path, says):
 
 
 @pytest.mark.slow
-def test_names_steer_no_terminal(tmp_path, says):
+def test_escapes_in_names_do_not_reach_the_terminal(tmp_path, says):
     names = list(hostile_names(40))
     axes = {names[0]: names, names[1]: names[:2]}
     crossed = [combination([one, two]) for one in names for two in names[:2]]
