@@ -1,4 +1,4 @@
-"""What the tests of the language share."""
+"""Helpers of the tests of the language."""
 
 import pytest
 from tests.tools.findings import findings_of
@@ -37,7 +37,7 @@ def required(requirement):
 
 @pytest.fixture
 def codes():
-    """The codes of all findings of a text after the common declarations, but for unread names."""
+    """The codes of all findings of a text after the common declarations, except unread names."""
 
     def found(text, **options):
         try:

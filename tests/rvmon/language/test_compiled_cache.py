@@ -1,4 +1,4 @@
-"""Specifications that were compiled before are read from the cache: the same, or not at all."""
+"""The cache of compiled specifications returns the same specification, or nothing."""
 
 import random
 from pathlib import Path
@@ -24,7 +24,7 @@ def kept_in(own_cache):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("path", sorted(ROOT.glob("specs/*.rv")), ids=lambda path: path.name)
-def test_what_is_stored_is_restored(path):
+def test_a_stored_specification_is_restored(path):
     compiled = compile_text(path.read_text(), name=str(path), directory=path.parent)
     again = from_plain(to_plain(compiled))
     assert again == compiled
@@ -34,7 +34,7 @@ def test_what_is_stored_is_restored(path):
 
 @pytest.mark.slow
 def test_random_specifications_are_restored_and_told_apart():
-    """By their texts, which are the same for those that are equal; spans do not count."""
+    """Equal specifications have the same text; spans do not count."""
     known = {}
     for seed in range(150):
         spec = random_spec(random.Random(seed), Profile())
@@ -46,19 +46,19 @@ def test_random_specifications_are_restored_and_told_apart():
     assert identity_text(moved) == identity_text(compile_text(TEXT, name="b.rv")[0])
 
 
-def test_the_second_time_it_is_read(own_cache):
+def test_the_second_load_reads_the_cache(own_cache):
     first = compile_cached(TEXT)
     assert first[1]  # `f` is never read
     assert compile_cached(TEXT) == first == compile_text(TEXT)
     [path] = kept_in(own_cache)
     other = compile_cached(TEXT.replace("x > 1 m", "x > 3 m"))
-    # That it is read at all: it tells what stands in the file.
+    # The cache was read: the result is what its file contains.
     [second] = {*kept_in(own_cache)} - {path}
     path.write_bytes(second.read_bytes())
     assert compile_cached(TEXT) == other
 
 
-def test_all_that_counts_is_told_apart(own_cache):
+def test_everything_that_matters_is_part_of_the_key(own_cache):
     compile_cached(TEXT)
     compile_cached(TEXT, name="b.rv")
     five, _ = compile_cached(TEXT, constants={"T": "5 s"})
@@ -67,7 +67,7 @@ def test_all_that_counts_is_told_apart(own_cache):
 
 
 @pytest.mark.parametrize("damage", [b"", b"x", b"[]", b'["dict",5]', b'["os.system","ls"]'])
-def test_a_damaged_file_is_of_no_account(own_cache, damage):
+def test_a_damaged_file_is_ignored(own_cache, damage):
     import hashlib
 
     first = compile_cached(TEXT)
@@ -87,7 +87,7 @@ def test_errors_are_not_kept(own_cache):
 IMPORTING = 'import "names.rv"\nrequirement R\n  always p\n'
 
 
-def test_what_is_imported_is_looked_at_each_time(own_cache, tmp_path):
+def test_imports_are_checked_each_time(own_cache, tmp_path):
     names = tmp_path / "names.rv"
     names.write_text("signal p : bool\n")
     first = compile_cached(IMPORTING, directory=tmp_path)
@@ -104,7 +104,7 @@ def test_what_is_imported_is_looked_at_each_time(own_cache, tmp_path):
     assert kept.read_bytes() == written
 
 
-def test_of_imports_each_folder_has_its_own(own_cache, tmp_path):
+def test_each_folder_has_its_own_imports(own_cache, tmp_path):
     for name, more in (("a", ""), ("b", "signal q : bool\n")):
         (tmp_path / name).mkdir()
         (tmp_path / name / "names.rv").write_text(f"signal p : bool\n{more}")
@@ -114,7 +114,7 @@ def test_of_imports_each_folder_has_its_own(own_cache, tmp_path):
 
 
 @pytest.mark.parametrize("harm", ["gone", "outside"])
-def test_what_may_not_be_imported_any_more_is_refused(own_cache, tmp_path, harm):
+def test_an_import_that_is_no_longer_allowed_is_refused(own_cache, tmp_path, harm):
     names, elsewhere = tmp_path / "own" / "names.rv", tmp_path / "elsewhere.rv"
     names.parent.mkdir()
     elsewhere.write_text("signal p : bool\n")

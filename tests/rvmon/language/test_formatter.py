@@ -1,4 +1,4 @@
-"""The formatter: canonical, idempotent, comments and meaning kept."""
+"""The formatter is canonical and idempotent, and keeps comments and meaning."""
 
 import pytest
 
@@ -61,13 +61,13 @@ coverpoint c = gaze_ok {yes: true, ignore no: false}
 
 
 def test_canonical_form():
-    """Words for symbols, one clause per line, declarations in columns, comments in their place."""
+    """Words instead of signs, a clause per line, declarations in columns, comments in place."""
     assert format_text(EXAMPLE) == CANONICAL
     assert format_text(CANONICAL) == CANONICAL
 
 
 @pytest.mark.parametrize("colon", [":", ""])
-def test_a_comment_behind_at_end_is_kept(colon):
+def test_a_comment_after_at_end_is_kept(colon):
     head = "spec s\nsignal b : bool\nrequirement R\n  upon b then b\n"
     text = format_text(f"{head}  at end{colon} # why\n  strong\n")
     assert text.endswith("  at end:  # why\n    strong\n")

@@ -1,4 +1,4 @@
-"""Whatever a file holds, the answer is a specification or findings, never an accident."""
+"""Any text gives a specification or findings, never an internal error."""
 
 import random
 import re
@@ -32,7 +32,7 @@ WORDS = [
 
 
 def answer(text):
-    """Compile and render whatever comes."""
+    """Compile any text and render the result."""
     try:
         checked, findings = compile_text(text)
         assert checked is not None

@@ -1,4 +1,4 @@
-"""What is declared and used nowhere gets a warning, in files that demand something."""
+"""Unused declarations get a warning in files with requirements."""
 
 from tests.tools.each import each
 
@@ -8,7 +8,7 @@ DEMAND = "event a, b\nrequirement R\n  upon a\n  then within T b\n"
 
 
 def warned(text):
-    """Codes and marked names of all warnings."""
+    """The codes and marked names of all warnings."""
     _, findings = compile_text(text)
     return [(found.code, found.spans[0].span.text) for found in findings]
 
@@ -24,7 +24,7 @@ def warned(text):
         (f"const T = 3 s\nevent c\n{DEMAND}", [("RV046", "c")]),
         (f"const T = 3 s\nsignal p : bool\n{DEMAND}", [("RV046", "p")]),
         (f"const T = 3 s\nevent c\n{DEMAND}cover C = b and c\n", []),
-        # A file that only declares has no users yet.
+        # A file with declarations only may be imported by others.
         ("event a\nconst T = 3 s\ndefine soon(p) = within T p\n", []),
     ],
 )

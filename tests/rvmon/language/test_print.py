@@ -1,4 +1,4 @@
-"""Printing a formula and reading it again gives the same formula."""
+"""A printed formula is read back as the same formula."""
 
 import random
 
@@ -23,7 +23,7 @@ _CHAINED = (BinaryOp.AND, BinaryOp.OR, BinaryOp.XOR, BinaryOp.IFF)
 
 
 def meaning(spec):
-    """What a specification says: equal for two that differ only in places and brackets."""
+    """The content of a specification, equal for two that differ only in places and brackets."""
     return (
         (spec.time, spec.period),
         tuple((s.name, s.type, s.ignores_nan, s.stale_after) for s in spec.signals.values()),
@@ -57,14 +57,14 @@ def test_parse_after_print_is_identity():
     for seed in range(80):
         spec = random_spec(random.Random(seed), Profile())
         once, _ = compile_text(show_spec(spec))
-        if not any(map(is_constant_arithmetic, numbers_of(spec))):  # which the compiler folds
+        if not any(map(is_constant_arithmetic, numbers_of(spec))):  # the compiler folds them
             assert meaning(once) == meaning(spec)
         twice, _ = compile_text(show_spec(once))
         assert meaning(twice) == meaning(once)
 
 
 def numbers_of(spec):
-    """All numbers of a specification, the inner ones too."""
+    """All numbers of a specification, including nested ones."""
     for requirement in spec.requirements.values():
         for formula in (requirement.trigger, requirement.consequent):
             for part in subformulas(formula):
@@ -74,7 +74,7 @@ def numbers_of(spec):
 
 
 def arithmetic_in(numbers):
-    """Those of the numbers that are arithmetic, and those inside of them."""
+    """The numbers that are arithmetic, including nested ones."""
     for number in numbers:
         if isinstance(number, Arithmetic):
             yield number
@@ -82,7 +82,7 @@ def arithmetic_in(numbers):
 
 
 def is_constant_arithmetic(node):
-    """Whether an operation or comparison has nothing but literals."""
+    """Whether all operands of an operation or comparison are literals."""
     args = (node.left, node.right) if isinstance(node, Compare) else node.args
     return all(isinstance(arg, Literal) for arg in args)
 

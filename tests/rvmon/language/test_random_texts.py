@@ -1,4 +1,4 @@
-"""Random texts by the grammar: they can be read, are varied, and layout keeps what they say."""
+"""Random texts of the grammar are readable and varied, and formatting keeps their meaning."""
 
 import random
 from collections import defaultdict
@@ -48,7 +48,7 @@ GAPS = (" ", " ", " ", "  ", "\n    ", " # note\n  ")
 
 
 def random_item(rng):
-    """A text of the language by its grammar; its names and types often do not fit."""
+    """A random text of the grammar; its names and types often do not fit."""
     rules, shortest = _rules()
     waiting = ["requirement" if rng.random() < 0.6 else "item"]
     free = rng.randint(3, LONGEST)
@@ -62,7 +62,7 @@ def random_item(rng):
             free -= len(rules[symbol]) > 1
             continue
         if before == "NUMBER" and symbol in ("NAME", "CALL"):
-            text += "\n    "  # beside the number it would be its unit
+            text += "\n    "  # directly after the number it would be its unit
         elif text and before != "CALL":
             text += rng.choice(GAPS) if rng.random() < 0.3 else " "
         text += rng.choice(_looks(symbol))
@@ -76,7 +76,7 @@ def _depth(rule, shortest):
 
 @cache
 def _rules():
-    """The expansions of each rule, and how deep the shortest text of each symbol is."""
+    """The expansions of each rule, and the depth of the shortest text of each symbol."""
     rules = defaultdict(list)
     for rule in grammar().rules:
         rules[rule.origin.name].append(tuple(symbol.name for symbol in rule.expansion))
@@ -98,7 +98,7 @@ def _looks(terminal):
 
 
 def syntax_of(text):
-    """What a text says, without places and layout; `None` if it cannot be read."""
+    """The syntax tree of a text without places; `None` if it cannot be read."""
     findings = Findings()
     parsed = parse_spec(Source("<string>", text), findings)
     return None if findings.diagnostics else _bare(parsed.items)
@@ -118,8 +118,8 @@ def _bare(node):
 
 
 @pytest.mark.slow
-def test_most_texts_can_be_read_all_words_occur_and_layout_keeps_what_they_say():
-    """What the grammar makes the parser reads, but for what has to be bracketed."""
+def test_random_texts_are_readable_and_formatting_keeps_their_meaning():
+    """The parser reads all of them but those that need brackets."""
     missing = {terminal.name for terminal in grammar().terminals} - {*grammar().ignore_tokens}
     made, read, before = 0, 0, ""
     while missing or made < 200:
@@ -141,7 +141,7 @@ def test_most_texts_can_be_read_all_words_occur_and_layout_keeps_what_they_say()
 
 
 def test_syntax_has_no_places():
-    """Two texts that differ in layout have one syntax; a bracket or another word makes two."""
+    """Texts that differ in layout have the same tree; a bracket or another word changes it."""
     first = syntax_of("requirement R always (p -> F q)")
     assert first is not None
     assert first == syntax_of("requirement R\n  always (p -> # note\n  eventually q)\n")

@@ -1,4 +1,4 @@
-"""The examples of the language reference are in order, and laid out as the formatter does."""
+"""The examples of the language reference compile and are formatted."""
 
 import re
 from pathlib import Path
@@ -37,7 +37,7 @@ OPEN = ("NAME", "CALL", "NUMBER", "UNIT", "STRING", *grammar().ignore_tokens)
 
 
 def grammar_words():
-    """All words of the language: those in the grammar's terminals, and those that are no names."""
+    """All words of the language: those of the grammar's terminals, and the reserved words."""
     yield from RESERVED | INFIX_WORDS | CLAUSE_WORDS | FUNCTIONS.keys()
     for terminal in grammar().terminals:
         if terminal.name not in OPEN:

@@ -1,4 +1,4 @@
-"""Counts, durations, shares and extremes of the last D: what they stand for, what is refused."""
+"""Counts, durations, shares and extremes over the last D: their expansion, and what is refused."""
 
 import re
 
@@ -74,7 +74,7 @@ PRINTED = (
         ("share(a, 5 s) > max(x, 5 s)", "duration(a, 5 s) > max(x, 5 s) * 5 s"),
     ],
 )
-def test_all_comparisons_are_made_of_a_few(text, printed):
+def test_comparisons_expand_into_a_few_basic_ones(text, printed):
     assert required(text) == printed
 
 
@@ -123,14 +123,14 @@ def test_all_comparisons_are_made_of_a_few(text, printed):
         ("count(e since trigger, 5 s) <= 2", "has two windows"),
     ],
 )
-def test_what_is_refused(text, message):
-    """With what says it instead."""
+def test_refused_amounts(text, message):
+    """The message names the alternative."""
     with pytest.raises(rvmon.SpecError, match=re.escape(message)):
         required(text)
 
 
-def test_each_occurrence_says_whether_it_is_added():
-    """Several may come at one instant, of which some are chosen."""
+def test_a_sum_may_add_chosen_occurrences_only():
+    """An event may occur several times at one instant; the condition selects among them."""
     text = (
         "event e(k: int, x: real, ok: bool), f\nrequirement R\n  upon e.k == k then within 3 s "
         "(sum({}, 5 s) <= 2) for each k in e.k\n"
@@ -142,15 +142,15 @@ def test_each_occurrence_says_whether_it_is_added():
         rvmon.loads(text.format("if e.k == k or e.ok then e.x else 0"))
 
 
-def test_since_the_trigger_needs_one():
-    """A bare formula has none, and a trigger is none itself."""
+def test_since_the_trigger_needs_a_trigger():
+    """A bare formula has no trigger, and a trigger cannot refer to itself."""
     for body in ("always count(e since trigger) <= 2", "upon count(e since trigger) > 2 then f"):
         with pytest.raises(rvmon.SpecError, match="there is none here"):
             rvmon.loads(f"event e, f\nrequirement R\n  {body}\n")
 
 
-def test_an_amount_ago_needs_held_time():
-    """Between samples there is nothing to look at."""
+def test_a_past_amount_needs_held_time():
+    """In sampled time there are no values between samples."""
     text = "time sampled\nsignal x : real\nrequirement R\n  always ago(x, 5 s) <= 2\n"
     with pytest.raises(rvmon.SpecError, match="there may be no sample"):
         rvmon.loads(text)

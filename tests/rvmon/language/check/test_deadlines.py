@@ -1,4 +1,4 @@
-"""Deadlines that come from data: what they stand for, what is refused, when they are missed."""
+"""Deadlines that come from data: their expansion, what is refused, when they are missed."""
 
 import re
 
@@ -33,7 +33,7 @@ def loaded(text):
         ("for (e.w) a", "now - `upon` > `for` R (a or now - `upon` > `for`)"),
     ],
 )
-def test_they_are_made_of_what_has_passed(text, printed):
+def test_deadlines_expand_into_elapsed_time(text, printed):
     found = format_formula(loaded(text).checked.requirements["R"].consequent)
     assert found == printed
 
@@ -49,8 +49,7 @@ def test_they_are_made_of_what_has_passed(text, printed):
         ("a until t0 + t0 <= now let t0 = now", "expected a comparison of `now` with a duration"),
     ],
 )
-def test_what_is_refused(text, message):
-    """With what says it instead."""
+def test_refused_deadlines(text, message):
     with pytest.raises(rvmon.SpecError, match=re.escape(message)):
         loaded(text)
 
@@ -64,7 +63,7 @@ def test_what_is_refused(text, message):
         ("(not (now > t0 + d)) until f let t0 = now", {"d": 1.5}, 1.5),
     ],
 )
-def test_they_are_missed_a_tick_late(text, values, after):
+def test_a_deadline_is_missed_one_tick_after_it(text, values, after):
     begin = {"far": 1.0, "d": after, "e": {"w": 7.0}} | values
     last = 5 + round(after * 1e9)
     for tell, expected in (
@@ -80,12 +79,12 @@ def test_they_are_missed_a_tick_late(text, values, after):
 @each(
     ("text", "samples", "verdict"),
     [
-        # What must hold until then is excused behind it.
+        # What must hold until the deadline need not hold after it.
         ("for (e.w) a", [(0.0, {"a": True, "e": {"w": 2.0}}), (2.1, {"a": False})], "P"),
         ("for (e.w) a", [(0.0, {"a": True, "e": {"w": 2.0}}), (2.0, {"a": False})], "F"),
-        # A deadline that is not known leaves the attempt open.
+        # An unknown deadline leaves the attempt open.
         ("within (e.w) f", [(0.0, {"e": {"w": None}}), (9.0, {})], "I"),
     ],
 )
-def test_the_last_instant_counts(text, samples, verdict):
+def test_the_instant_of_the_deadline_is_in_time(text, samples, verdict):
     assert loaded(text).evaluate(samples).verdicts["R"] == verdict

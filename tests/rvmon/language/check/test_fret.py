@@ -1,4 +1,4 @@
-"""Every combination of FRET's scopes, conditions and timings is translated as the page says."""
+"""The page's translations of all FRET combinations of scope, condition and timing are correct."""
 
 import itertools
 import random
@@ -16,7 +16,7 @@ TEXT = PAGE.read_text(encoding="utf-8").partition("## Requirements written for F
 
 
 def table(heading):
-    """The rows of a table of the page: the word of FRET, then the codes of each further cell."""
+    """The rows of a table of the page: FRET's word, then the code spans of the other cells."""
     part = TEXT.partition(f"### {heading}\n\n")[2].partition("\n\n")[0]
     for line in part.splitlines()[2:]:
         name, *cells = (re.findall(r"`([^`]+)`", cell) for cell in line.split("|")[1:-1])
@@ -36,7 +36,7 @@ N = 2
 
 
 def intervals(scope, m):
-    """The stretches of a run that belong to the scope: first and last position, whether closed."""
+    """The intervals of a run in the scope: first and last position, and whether it is closed."""
     last = len(m) - 1
     falls = [k for k in range(1, len(m)) if m[k - 1] and not m[k]]
     match scope:
@@ -63,7 +63,7 @@ def intervals(scope, m):
 
 
 def triggers(condition, c, start, end):
-    """Where the response is asked for, inside a stretch."""
+    """The positions of an interval at which the response is required."""
     if condition == "null":
         return [start]
     if condition == "whenever":
@@ -72,7 +72,7 @@ def triggers(condition, c, start, end):
 
 
 def violates(timing, r, s, t, end, closed):
-    """Whether the response to a trigger at t is missing for certain, in a stretch up to `end`."""
+    """Whether the response to a trigger at t is certainly missing in an interval up to `end`."""
     inside = range(t, end + 1)
     until = range(t, min(t + N, end) + 1)
     match timing:
@@ -101,7 +101,7 @@ def violates(timing, r, s, t, end, closed):
 
 
 def violates_negated(timing, r, s, t, end, closed):
-    """The same for the `only` scopes, outside of which FRET demands the opposite timing."""
+    """The same for the `only` scopes: outside them FRET demands the opposite timing."""
     without = [not value for value in r]
     longer = range(t, min(t + N + 1, end) + 1)
     match timing:
@@ -126,7 +126,7 @@ def violates_negated(timing, r, s, t, end, closed):
 
 
 def fails(scope, condition, timing, run):
-    """FRET's meaning: a stretch, a trigger in it, and no response."""
+    """Whether FRET's requirement fails: an interval has a trigger without a response."""
     judged = violates_negated if scope.startswith("only") else violates
     return any(
         judged(timing, run["r"], run["s"], t, end, closed or _ends_with_run(scope, timing))
@@ -140,7 +140,7 @@ def _ends_with_run(scope, timing):
 
 
 def translated(scope, condition, timing):
-    """The requirement that the page gives for a combination."""
+    """The page's requirement for a combination."""
     negated = scope.startswith("only")
     consequent = TIMINGS[timing][negated]
     clause, trigger = (*SCOPES[scope], "")[0], CONDITIONS[condition]
@@ -182,5 +182,5 @@ def test_translation(scope, condition):
         assert seen == ({False} if never else {True, False})
 
 
-def test_page_says_what_is_tested():
+def test_the_page_has_all_combinations():
     assert f"{len(SCOPES) * len(CONDITIONS) * len(TIMINGS)} combinations" in TEXT

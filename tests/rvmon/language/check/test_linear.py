@@ -1,4 +1,4 @@
-"""`monitor as written`: universal CTL on single runs, and what is refused."""
+"""`monitor as written`: universal CTL properties on single runs, and what is refused."""
 
 import random
 
@@ -56,7 +56,7 @@ LINEAR = {
 
 
 @each("text", LINEAR)
-def test_what_means_the_same_on_every_run_is_monitored(text):
+def test_properties_of_single_runs_are_monitored(text):
     assert parts(text) == LINEAR[text]
 
 
@@ -72,20 +72,20 @@ REFUSED = {
 
 
 @each("text", REFUSED)
-def test_the_rest_is_refused_with_the_reason(text):
-    """The diagnostic is RV054, its place the part that is not linear."""
+def test_other_properties_are_refused_with_a_reason(text):
+    """RV054 marks the part that is not linear."""
     [finding] = findings_of(parts, text)
     assert finding.code == "RV054"
     assert REFUSED[text] in finding.message
 
 
 @pytest.mark.parametrize("text", ["AF[2 s, 5 s] AG a", "AG EF[1 s, 2 s] a", "E<>[1 s, 2 s] AG a"])
-def test_nobody_is_sent_to_a_checker_that_refuses_it(text):
+def test_the_advice_is_not_refused_in_turn(text):
     [finding] = findings_of(parts, text)
     assert finding.help.endswith("does not decide a window that opens later either")
 
 
-def test_there_has_to_be_a_property():
+def test_monitor_needs_a_property():
     with pytest.raises(SpecError, match="add a clause `property"):
         loads(f"{HEAD}requirement R1\n  monitor as written")
 
@@ -95,7 +95,7 @@ def test_next_has_no_meaning_in_held_time():
         parts("AG (a -> AX b)", HEAD.replace("sampled", "held"))
 
 
-# Against the definitions, on random structures.
+# Compared with the definitions on random structures.
 
 
 def random_property(rng, depth):
@@ -111,7 +111,7 @@ def random_property(rng, depth):
 
 
 def holds_everywhere(structure, state):
-    """Where a CTL formula is true: by the fixed points of its operators."""
+    """The states in which a CTL formula is true, by fixed points of its operators."""
     labels, after = structure
     worlds = frozenset(labels)
 
@@ -164,7 +164,7 @@ def _true(formula, label):
 
 
 def on_all_paths(structure, tableau):
-    """Where no path of a structure is one on which a formula is false."""
+    """The states of a structure from which no path violates a formula."""
     labels, after = structure
     nodes = [
         (world, state)

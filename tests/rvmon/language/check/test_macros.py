@@ -1,4 +1,4 @@
-"""Macros and constants: hygienic, overridable, checked where they stand."""
+"""Macros and constants are hygienic, may be overridden, and are checked in place."""
 
 import pytest
 from tests.tools.each import each
@@ -21,20 +21,20 @@ def printed(spec):
             "upon start then soon(near(d, 5 cm) and is(idle), 2 * 500 ms)",
             "within 1 s (d < 0.05 m and state == idle)",
         ),
-        # A parameter of the same name as a signal in the argument does not capture it.
+        # A parameter does not capture a signal of the same name in the argument.
         (
             "define both(a, b) = a and next_to(b, a)\ndefine next_to(a, b) = not a or b",
             "upon start then eventually both(b, a)",
             "eventually (b and (not a or b))",
         ),
-        # An argument may read what `let` names at its use.
+        # An argument may read a `let` of the requirement.
         ("define soon(p) = within 1 s p", "upon e then soon(d > v) let v = d", "within 1 s d > v"),
-        # A macro may stand in its own argument.
+        # A call may be an argument of the same macro.
         ("define m(p) = not p", "upon start then eventually m(m(a))", "eventually not not a"),
     ],
 )
 def test_macros_with_parameters(checked, defined, required, expected):
-    """Arguments are formulas, numbers, durations or labels alike, and keep their own names."""
+    """Arguments may be formulas, numbers, durations or labels, and their names stay theirs."""
     assert printed(checked(f"{defined}\nrequirement R {required}")) == expected
 
 
@@ -44,16 +44,16 @@ MACRO = "define p(y, z) = y or z\nrequirement R always "
 @each(
     ("text", "code"),
     [
-        # A macro does not see the names of its use.
+        # A macro cannot read names of the requirement that calls it.
         ("define far = d > v\nrequirement R upon e then within 1 s far let v = d", "RV012"),
-        # A wrong one is reported once.
+        # A fault is reported once.
         ("define p = aa or b\nrequirement R1 always p\nrequirement R2 always not p", "RV012"),
         ("define p(z) = z or bb\nrequirement R always p(a)", "RV012"),
         (f"{MACRO} p(a, b, c)", "RV021"),
         (f"{MACRO} p", "RV021"),
         ("const T = x", "RV020"),
         ("const T = a", "RV020"),
-        # What has the name of something else.
+        # Names that are taken.
         ("define a = b", "RV011"),
         ("const a = 3", "RV011"),
         ("define abs(z) = z", "RV011"),
@@ -68,7 +68,7 @@ MACRO = "define p(y, z) = y or z\nrequirement R always "
         ("requirement R upon pick then F a for each v in pick.id let v = d", "RV011"),
     ],
 )
-def test_what_is_refused(codes, text, code):
+def test_refused_macros(codes, text, code):
     assert codes(text) == [code]
 
 

@@ -1,4 +1,4 @@
-"""Every pattern in every scope does what the timelines beneath it say."""
+"""The timelines of the pattern page are correct for every pattern in every scope."""
 
 import re
 from functools import cache
@@ -44,7 +44,7 @@ ALL = list(timelines())
 
 @cache
 def compiled(call, scope):
-    """A specification with that pattern."""
+    """A specification with the pattern."""
     return compile_text(f"""spec demo
 time sampled
 import patterns
@@ -55,7 +55,7 @@ requirement R {call} {SCOPES[scope]}
 
 @pytest.mark.law
 def test_timelines():
-    """The verdict is the one that stands before the colon."""
+    """The verdict of a timeline is the letter before its colon."""
     for call, scope, verdict, words in ALL:
         samples = [
             Sample(t, {letter: letter in word for letter in LETTERS})

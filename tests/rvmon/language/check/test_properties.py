@@ -1,4 +1,4 @@
-"""CTL properties, and the response monitors that are derived from them."""
+"""CTL properties, and the response monitors derived from them."""
 
 from tests.tools.each import each
 
@@ -50,10 +50,10 @@ RESPONSE = f"{ROLES}requirement R\n  monitor as response within 3 s\n  property 
         ("property P: A[] (AG a) < 3", "RV050"),
         ("property P: A[] (d < 3)", "RV023"),
         ("property P: AG a and b", "RV002"),
-        # A requirement speaks of one run.
+        # A requirement is about one run.
         ("requirement R upon a then EF b", "RV050"),
         ("define p = A[] a\nrequirement R p", "RV050"),
-        # A response is derived of a property, whose parts are of the inputs or of the outputs.
+        # A response monitor needs a property that separates inputs from outputs.
         ("requirement R monitor as response within 3 s", "RV053"),
         (RESPONSE + "E<> (sensed or released)", "RV053"),
         (RESPONSE + "E<> (sensed and ok)", "RV053"),
@@ -64,12 +64,12 @@ RESPONSE = f"{ROLES}requirement R\n  monitor as response within 3 s\n  property 
         (RESPONSE + "E<> (true and released)", "RV053"),
     ],
 )
-def test_what_is_refused(codes, text, code):
+def test_refused_properties(codes, text, code):
     assert codes(text) == [code]
 
 
 def response(checked, body):
-    """Trigger and consequent of a derived monitor."""
+    """The trigger and consequent of a derived monitor."""
     found = checked(RESPONSE + body).requirements["R"]
     return format_formula(found.trigger), format_formula(found.consequent)
 
@@ -94,5 +94,5 @@ def response(checked, body):
     ],
 )
 def test_response_monitor(checked, body, trigger, consequent):
-    """Inputs trigger, positive outputs are awaited together, negated ones stay away."""
+    """Inputs are the trigger; outputs must hold together, negated outputs never."""
     assert response(checked, body) == (trigger, consequent)

@@ -53,7 +53,7 @@ def test_bare_formulas_are_split(checked, text, mode, trigger, consequent):
         ("upon e then F a at end: later", "RV045"),
         ("upon end then immediately a scope after (b)", "RV041"),
         ("upon e then F a scope after (F b)", "RV040"),
-        # A captured value keeps type and unit.
+        # A captured value keeps its type and unit.
         ("upon e then F d > v let v = d", ""),
         ("upon e then F x > v let v = d", "RV022"),
         ("upon e then F state == v let v = state", ""),
@@ -64,7 +64,7 @@ def test_bare_formulas_are_split(checked, text, mode, trigger, consequent):
             (f"always a in at least {share} of runs", "RV075")
             for share in ("100 %", "0 %", "95", "95 s", "1e999 %")
         ),
-        # No warning where it is meant.
+        # No warning if it is intended.
         ("upon e then (immediately (a and b))", ""),
         ("immediately a", ""),
         ("start -> a", ""),
@@ -78,7 +78,7 @@ def test_bare_formulas_are_split(checked, text, mode, trigger, consequent):
         ("upon e then once[0, 1 s] a", ""),
     ],
 )
-def test_requirements_that_are_refused_or_warned_of(codes, text, code):
+def test_refusals_and_warnings(codes, text, code):
     found = codes(f"requirement R {text}")
     assert found == code.split() or (found == ["RV060"] and "scope after (F b)" in text)
 
@@ -110,8 +110,8 @@ def test_a_share_of_runs_is_kept(requirement, clause, share):
     assert share is None or requirement(f"upon e then F a {share}").run_share == share
 
 
-def test_let_is_of_the_trigger(codes, requirement):
-    """A captured value is not known in the trigger; a later `let` may use an earlier one."""
+def test_let_values_are_captured_at_the_trigger(codes, requirement):
+    """The trigger cannot read a captured value; a later `let` may read an earlier one."""
     assert codes("requirement R upon d > v then eventually a let v = d") == ["RV012"]
     found = requirement("upon e then F d > w let v = d let w = v + 1 m")
     assert [str(type(capture.value).__name__) for capture in found.captures] == [

@@ -1,4 +1,4 @@
-"""Scopes mean what the published formulas of the pattern catalogue say."""
+"""Scopes have the meaning of the published formulas of the pattern catalogue."""
 
 import itertools
 import random
@@ -10,7 +10,7 @@ from rvmon.language.compile import compile_text
 from rvmon.testing import oracle
 from rvmon.trace.sample import Sample
 
-# The formulas of the catalogue, as published; `X F` becomes `X eventually`.
+# The published formulas of the catalogue; `X F` becomes `X eventually`.
 # Source: Dwyer, Avrunin, Corbett, ICSE 1999, and the catalogue kept by its authors.
 PUBLISHED = {
     ("absence(p)", "before (r)"): "(F r) -> (not p U r)",
@@ -36,8 +36,8 @@ PUBLISHED = {
     ): "G ((q & !r & (F r)) -> ((p -> (!r U (s & !r))) U r))",
     ("response(p, s)", "after (q) until (r)"): "G (q & !r -> ((p -> (!r U (s & !r))) W r))",
 }
-# Between and after-until open at every `q` in the catalogue, at the first one of a stretch here:
-# the two differ where a second `q` follows inside the stretch, unless the pattern does not mind.
+# Between and after-until open at every `q` in the catalogue, here only at the first `q` of a run
+# of them: patterns that count differ if a second `q` follows inside the scope.
 
 
 @cache
@@ -51,14 +51,14 @@ requirement R {requirement}
 
 
 def verdict(requirement, words):
-    """The verdict on one word per nanosecond; a requirement that is not triggered passes."""
+    """The verdict on a word with a letter per nanosecond; not triggered counts as passed."""
     samples = [Sample(t, {name: name in word for name in "pqrs"}) for t, word in enumerate(words)]
     found = oracle.evaluate(compiled(requirement), samples).verdicts["R"]
     return "P" if found == "NT" else found
 
 
 def reopens(words):
-    """Whether a scope that is open is opened again."""
+    """Whether an open scope is opened again."""
     inside = False
     for word in words:
         if "r" in word:
@@ -83,7 +83,7 @@ def test_scope_is_the_published_formula(call, scope):
         if call in {"existence(p)", "precedence(s, p)"} and "q" in scope and reopens(words):
             continue
         if scope == "before (r)" and "r" in words[0]:
-            continue  # an empty scope triggers nothing here, and lacks existence there
+            continue  # an empty scope triggers nothing here, but violates existence there
         expected = verdict(f"upon start then {formula}", words)
         assert verdict(f"{call} scope {scope}", words) == expected, words
         seen.add(expected)

@@ -1,4 +1,4 @@
-"""`monitor as cover`: properties of some path as goals, and what no single run shows."""
+"""`monitor as cover`: existential properties as coverage goals, and what no single run can show."""
 
 import pytest
 from tests.tools.each import each
@@ -18,8 +18,8 @@ SHOWN = {
 
 
 @pytest.mark.parametrize("text", SHOWN)
-def test_what_one_run_shows_is_a_goal(text):
-    """It is no requirement, so that no run fails it."""
+def test_a_property_that_one_run_shows_is_a_goal(text):
+    """A goal is not a requirement: no run fails it."""
     spec = loads(f"{HEAD}  property {text}")
     assert not spec.requirements
     goal = spec.checked.covers["R1"]
@@ -38,13 +38,13 @@ def test_what_one_run_shows_is_a_goal(text):
         ("property E<> a\n  at end: fail", "a goal has no attempts"),
     ],
 )
-def test_what_no_run_shows_is_refused(text, message):
+def test_a_property_that_no_single_run_shows_is_refused(text, message):
     with pytest.raises(SpecError, match=message):
         loads(f"{HEAD}  {text}")
 
 
 def test_a_run_shows_it_or_not(tmp_path, says):
-    """A run that shows the goal passes it, none fails it; a property alone is told as unjudged."""
+    """A run that shows the goal passes it; properties without a monitor are not judged."""
     spec = tmp_path / "s.rv"
     spec.write_text(f"{HEAD}  property E<> (a and b)\nproperty ALONE: E<> c", "utf-8")
     for last, answer in (("1,1", "R1  P"), ("1,0", "R1  I")):

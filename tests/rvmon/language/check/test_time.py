@@ -1,4 +1,4 @@
-"""Durations and intervals in whole ticks, ages, and what depends on the time model."""
+"""Durations and intervals in whole ticks, ages, and differences between the time models."""
 
 from tests.tools.each import each
 
@@ -26,7 +26,7 @@ from rvmon.language.checked.specification import TimeModel
         ("within 1 s a\ntime sampled every 0 s", "RV032"),
     ],
 )
-def test_what_is_no_time_is_refused(codes, text, code):
+def test_refused_durations(codes, text, code):
     assert codes(f"requirement R upon start then {text}") == [code]
 
 
@@ -42,7 +42,7 @@ def test_what_is_no_time_is_refused(codes, text, code):
     ],
 )
 def test_age(required, text, meaning, printed):
-    """An age is: neither an update within the last D, nor the beginning of the trace."""
+    """Older than D: no update within the last D, nor did the trace start within it."""
     assert required(text) == required(meaning) == printed
 
 

@@ -1,4 +1,4 @@
-"""Requirements that fail or stay open by their own wording: found there, and only there."""
+"""Requirements that fail or stay open because of their wording are found, and no others."""
 
 import random
 from dataclasses import replace
@@ -95,7 +95,7 @@ AT_THE_FIRST_INSTANT = {
         for body in bodies
     ],
 )
-def test_what_is_false_when_it_begins(body, found, codes):
+def test_formulas_that_are_false_at_the_start(body, found, codes):
     told = [code for code in codes(f"requirement R {body}\n") if code in ("RV047", "RV048")]
     assert " ".join(told) == found
 
@@ -107,7 +107,7 @@ def test_what_is_false_when_it_begins(body, found, codes):
         ("always (a -> x <= v) let v = x", ["RV049"]),
         ("always x <= v let v = x", ["RV049"]),
         ("whenever e then within 1 s x <= v let v = x", []),
-        # In sampled time two samples in a row with the event are one stretch.
+        # In sampled time, consecutive samples with the event are one episode.
         ("whenever e then within 1 s x <= v let v = x\ntime sampled", ["RV049"]),
         ("upon a then for 1 s x <= v let v = x", []),
         ("upon a then for 1 s n <= v let v = pick.id", ["RV028"]),
@@ -117,7 +117,7 @@ def test_what_is_false_when_it_begins(body, found, codes):
     ],
 )
 def test_captured_values(text, found, codes):
-    """Once per stretch under `whenever`; a field where its event occurs."""
+    """Under `whenever` once per episode; a field only where its event occurs."""
     assert codes(f"requirement R {text}\n") == found
 
 
@@ -134,7 +134,7 @@ def test_captured_values(text, found, codes):
         "always (a since[1 s, 2 s] b)",
     ],
 )
-def test_the_fix_is_of_the_language(time, body, codes):
+def test_the_proposed_fix_compiles(time, body, codes):
     head = f"time {time}\nsignal a, b, c : bool\nevent e, f\nrequirement R\n  "
     (finding,) = (f for f in compile_text(head + body)[1] if f.code in ("RV047", "RV048"))
     fixed = finding.help.split("`")[1]
@@ -143,7 +143,7 @@ def test_the_fix_is_of_the_language(time, body, codes):
 
 
 def required_first():
-    """Random formulas of the past, required at each instant from the first on."""
+    """Random past formulas, required at each instant from the first."""
     rng = random.Random(5)
     for _ in range(300):
         spec = random_spec(rng, Profile(future=False, captures=False, for_each=False))
@@ -154,7 +154,7 @@ def required_first():
 
 
 def born(case):
-    """The case with all known in its first sample: what is unborn or unknown fails nothing."""
+    """The case with every name known in its first sample, as unknown values fail nothing."""
     first = case.samples[0]
     known = {name: value for name, value in first.values.items() if value is not None}
     whole = {**known, "p": True, "q": False, "r": True, "x": 1, "y": 2, "mode": "red"}
@@ -163,7 +163,7 @@ def born(case):
 
 
 @pytest.mark.law
-def test_what_is_said_of_the_first_instant_holds_on_every_run():
+def test_warnings_about_the_first_instant_hold_on_every_run():
     warned = 0
     for number, (time, period, required) in enumerate(required_first()):
         requirement = build.requirement(required, whenever=Constant(True))
@@ -173,11 +173,11 @@ def test_what_is_said_of_the_first_instant_holds_on_every_run():
         if not list(traps_at_start(*parts, NOWHERE)):
             continue
         if any(isinstance(one, UpdateValue | Arithmetic) for one in numerics(required)):
-            continue  # it is born with the second update, or may have no value, and fails nothing
+            continue  # its first value comes with the second update, or may never come
         warned += 1
         own = build.spec_of(requirement, time=time, period=period)
         case = random_trace(random.Random(number), own, TraceProfile(advances=False))
-        if time is TimeModel.CLOCKED or not case.samples:  # the first position may come later
+        if time is TimeModel.CLOCKED or not case.samples:  # the first position may be later
             continue
         report = judge(born(case))
         assert report.verdicts[requirement.id] is Verdict.FAIL
@@ -186,7 +186,7 @@ def test_what_is_said_of_the_first_instant_holds_on_every_run():
 
 
 @pytest.mark.law
-def test_what_is_said_of_the_trigger_holds_on_every_run():
+def test_warnings_about_the_trigger_hold_on_every_run():
     warned = attempts = 0
     for seed in range(1500):
         rng = random.Random(seed)

@@ -1,4 +1,4 @@
-"""Types, units and constants: what fits is converted exactly, what does not is refused."""
+"""Types, units and constants are converted exactly, or refused."""
 
 from fractions import Fraction
 
@@ -65,7 +65,7 @@ from rvmon.units import UnknownUnitError, parse_unit
         ("always a\nsignal z : real [m] input ignore NaN", ""),
     ],
 )
-def test_what_does_not_fit_is_refused(codes, text, code):
+def test_mismatches_are_refused(codes, text, code):
     assert codes(f"requirement R {text}") == code.split()
 
 
@@ -97,7 +97,7 @@ def test_constants_are_converted_once_to_the_nearest_float(requirement, text, va
     [
         ("5 cm < d", "0.05 m < d"),
         ("d < z", "d < z * 0.01"),
-        ("w < 180 deg", "w < 3.141592653589793 rad"),  # degrees and radians are of one kind
+        ("w < 180 deg", "w < 3.141592653589793 rad"),  # degrees and radians measure the same
         ("eventually 3 s < 200 ms", "eventually false"),
         ("pick.ok or prev(a)", "pick.ok or prev(a)"),
     ],
@@ -110,7 +110,7 @@ def test_comparison_is_made_in_the_unit_of_the_signal(checked, formula, printed)
 
 
 def test_label_equals_its_own_signal_first(checked):
-    """A name beside a signal with labels is its label, even if a signal has that name."""
+    """A name compared with a labelled signal is a label, even if a signal has that name."""
     spec = checked("signal moving : bool\nrequirement R always (state == moving -> moving)")
     requirement = spec.requirements["R"]
     assert requirement.trigger.right == Literal("moving")
@@ -145,5 +145,5 @@ def test_unit_factors(text, base, factor):
 
 
 @pytest.mark.parametrize("text", ["stale after 1 s ignore NaN", "ignore nan", "ignore"])
-def test_where_what_is_ignored_stands(text, message):
+def test_ignore_nan_is_written_after_the_type(text, message):
     assert "write `ignore NaN` after the type" in message(f"signal z : real {text}\n")

@@ -1,4 +1,4 @@
-"""Every operation has an entry that all readers can use."""
+"""Every arithmetic operation has a complete entry in the table."""
 
 import re
 
@@ -12,14 +12,14 @@ ANGLES = (UnitRule.OF_ANGLE, UnitRule.TURN, UnitRule.PLACES)
 
 
 def head(op):
-    """Signals of the kind that an operation takes."""
+    """Declarations of signals of the kind that an operation takes."""
     kind = "int" if op.entry.unit is UnitRule.BITS else "real"
     unit = " [rad]" if op.entry.unit in ANGLES else ""
     return f"spec s\nsignal x, y : {kind}{unit}\nsignal z : real{unit}\n"
 
 
 def wanted_unit(op):
-    """The unit of the result, behind a number."""
+    """The unit of the result, as written after a number."""
     return {
         UnitRule.TO_ANGLE: " rad",
         UnitRule.DIRECTION: " rad",
@@ -43,8 +43,8 @@ def test_a_wrong_number_of_arguments_is_refused(op):
 
 
 @each("op", [op for op in NumericOp if op is not NumericOp.BIT])
-def test_constants_are_worked_out_as_values_are(op):
-    """The same number, whether the checker or a monitor works it out."""
+def test_constants_are_computed_like_values(op):
+    """The checker and a monitor compute the same number."""
     whole = op.entry.unit is UnitRule.BITS
     numbers = [4, 3] if whole else [0.75, 0.5, 0.5, 0.25]
     numbers, names = numbers[: op.entry.least], ["x", "y", "y", "z"]
@@ -77,7 +77,7 @@ def test_constants_are_worked_out_as_values_are(op):
         ("asin(2) < 1 rad", "`asin(2)` is out of range"),
     ],
 )
-def test_what_no_function_takes_is_refused(call, message):
+def test_arguments_that_no_function_takes_are_refused(call, message):
     head = "spec s\nsignal x : real\nsignal n : int\nsignal d : real [m]\n"
     text = f"{head}requirement R\n  always {call}\n"
     with pytest.raises(rvmon.SpecError, match=re.escape(message)):

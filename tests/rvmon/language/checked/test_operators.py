@@ -1,4 +1,4 @@
-"""Every operator and function has an entry that agrees with all readers, and with the reference."""
+"""The table of operators and functions agrees with the grammar, the law and the reference."""
 
 from itertools import product
 from pathlib import Path
@@ -30,15 +30,15 @@ SIGNALS = (SignalAtom("p"), SignalAtom("q"))
 
 
 def formula_of(op, operands=SIGNALS):
-    """An operator over signals, with an interval where it takes one."""
+    """A formula with the operator over signals, and an interval if it takes one."""
     window = None if op.entry.window is Window.NONE else Interval(0, 2)
     if isinstance(op, UnaryOp):
         return Unary(op, operands[0], window)
     return Binary(op, *operands, window)
 
 
-def test_operators_stand_in_the_reference():
-    """The reference has their rows: the words, the signs, what they mean."""
+def test_the_reference_lists_all_operators():
+    """Each has a row with its words, signs and meaning."""
     for op in [op for op in OPERATORS if not op.entry.called]:
         word, *others = op.spellings
         form = f"{word} φ" if isinstance(op, UnaryOp) else f"φ {word} ψ"
@@ -46,7 +46,7 @@ def test_operators_stand_in_the_reference():
         assert f"| `{form}` | {signs} | {op.entry.doc} |".replace("|  |", "| |") in PAGE
 
 
-def test_functions_stand_in_the_reference():
+def test_the_reference_lists_all_functions():
     for function in FUNCTIONS.values():
         arguments = [LETTERS[argument] for argument in function.arguments]
         if arguments[:2] == ["x", "x"]:
@@ -55,8 +55,8 @@ def test_functions_stand_in_the_reference():
         assert f"| `{form}` | {function.doc} |" in PAGE
 
 
-def test_all_are_made_of_a_few():
-    """What an operator is told in holds nothing but the basis."""
+def test_expansions_use_basic_operators_only():
+    """The expansion of an operator contains only basic ones."""
     for op in OPERATORS:
         parts = subformulas(rewritten(formula_of(op)))
         assert {part.op for part in parts if isinstance(part, Unary | Binary)} <= BASIS
@@ -77,7 +77,7 @@ def verdicts_of(formulas):
 
 @pytest.mark.law
 @pytest.mark.parametrize("op", OPERATORS, ids=lambda op: op.name)
-def test_what_an_operator_is_told_in_means_the_same(op):
+def test_an_expansion_means_the_same(op):
     formula = formula_of(op)
     pair = [formula, rewritten(formula)]
     assert all(one == other for one, other in verdicts_of(pair))

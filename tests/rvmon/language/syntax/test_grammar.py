@@ -1,4 +1,4 @@
-"""The grammar is unambiguous, and words and numbers are read as the language page says."""
+"""The grammar is unambiguous and agrees with the language page."""
 
 import io
 import logging
@@ -86,14 +86,14 @@ def test_grammar_has_no_conflicts():
         ("x < 1e3", "x < 1000"),
         ("a and always b", "a and always b"),
         ("always (a) and b", "(always a) and b"),
-        # Windows behind `within`, the same operator on both sides, bounds as in models.
+        # Windows after `within`, the same operator on both sides, bounds as in models.
         ("(a unless b) and c", "(a unless b) and c"),
         ("a -> b until c", "a -> b until c"),
         ("within 1 s a or within 2 s b", "(within 1 s a) or within 2 s b"),
         ("within [1 s, 2 s] a", "eventually[1 s, 2 s] a"),
         ("for (1 s, 2 s] a", "always[1000000001 ns, 2 s] a"),
         ("a until[<= 2 s] b", "a until[0, 2 s] b"),
-        # A name behind a number is its unit; a compound unit has known parts and no spaces.
+        # A name after a number is its unit; a compound unit has known parts and no spaces.
         ("speed < 5 mm/s", "speed < 0.005 m/s"),
         ("speed < 18 km/h", "speed < 5 m/s"),
         ("d / 2 m < x", "d / 2 m < x"),
@@ -103,12 +103,12 @@ def test_grammar_has_no_conflicts():
         ("x < 5 U b", "x < 5 until b"),
         ("x < 50 %", "x < 0.5"),
         ("state == S S state != S", "state == S since state != S"),
-        # Brackets that only enclose are no levels.
+        # Redundant brackets do not count as nesting.
         *(("(" * many + "a" + ")" * many, "a") for many in (90, 99, 150)),
     ],
 )
 def test_operators(required, text, printed):
-    """Words and signs mean the same, precedence is as stated, printing uses few brackets."""
+    """Words and signs are equivalent, precedence is as documented, printing uses few brackets."""
     assert required(text) == printed
 
 
@@ -120,7 +120,7 @@ def test_operators(required, text, printed):
     ],
 )
 def test_a_connective_beside_until_needs_brackets(text, help_):
-    """`a unless b and c` is read by people as `a unless (b and c)`, and was not."""
+    """People read `a unless b and c` as `a unless (b and c)`; by precedence it is the other."""
     text = f"spec s\nsignal a, b, c : bool\nrequirement R upon start then {text}\n"
     assert [one.help for one in findings_of(rvmon.loads, text) if one.code == "RV002"] == [help_]
 
@@ -172,7 +172,7 @@ def test_clauses_between_trigger_and_consequent():
 
 
 def test_a_choice_is_laid_out_on_one_line():
-    """Its `then` is not that of a trigger."""
+    """The `then` of a choice is not the `then` of a trigger."""
     text = "requirement R\n  upon x > if a then 1 else 2\n  then if a then b else c\n"
     assert format_text(text) == text
 
@@ -190,15 +190,15 @@ def test_a_choice_is_laid_out_on_one_line():
         ("c and (always a or b)", "RV002"),
     ],
 )
-def test_what_is_read_in_two_ways_needs_brackets(codes, text, code):
+def test_ambiguous_formulas_need_brackets(codes, text, code):
     assert codes(f"requirement R upon start then {text}") == [code]
 
 
 @pytest.mark.slow
-def test_reserved_words_are_no_names(codes):
-    """Words of the language cannot be declared, but quoted they can, and dotted they are others.
+def test_reserved_words_are_not_names(codes):
+    """Words of the language can be declared only in quotes; with a dot they are other names.
 
-    With a text or nothing behind it a word is taken for the name of a requirement, too.
+    A reserved word before a text or comment is still taken for the name of a requirement.
     """
     for name in sorted(RESERVED):
         assert codes(f"signal z, {name} : bool")[:1] == ["RV010"], name
@@ -210,7 +210,7 @@ def test_reserved_words_are_no_names(codes):
 
 @pytest.mark.slow
 def test_infix_and_clause_words_may_be_names(codes):
-    """Where an operand stands, infix words and clause words are names."""
+    """In the place of an operand, infix words and clause words are names."""
     for name in sorted(INFIX_WORDS | CLAUSE_WORDS):
         assert codes(f"signal {name} : bool\nrequirement R always ({name} and {name})") == [], name
 
@@ -256,6 +256,6 @@ def test_a_chain_beyond_all_limits_is_refused_before_it_is_read(sign):
     assert [finding.code for finding in caught.value.diagnostics] == ["RV005"]
 
 
-def test_words_in_texts_and_comments_are_no_operators():
+def test_words_in_texts_and_comments_are_not_operators():
     text = 'signal p : bool\nrequirement R "' + "and " * 3000 + '"\n  always p  # ' + "or " * 3000
     compile_text(text)

@@ -1,4 +1,4 @@
-"""Imports: relative to the file, each file once, circles and double names with both places."""
+"""Imports are relative to the file and read once; circles and duplicate names show both places."""
 
 import os
 
@@ -59,25 +59,25 @@ def test_file_is_read_once(compile_file):
         ("RV011", 2, {"main": 'import "one.rv"\nsignal a : bool', "one": "event a"}),
     ],
 )
-def test_a_circle_and_a_double_name_are_errors_with_both_places(compile_file, code, files, texts):
+def test_a_circle_and_a_duplicate_name_show_both_places(compile_file, code, files, texts):
     (finding,) = findings_of(compile_file, **texts)
     assert (finding.code, len(finding.spans)) == (code, 2)
     assert len({label.span.source.name for label in finding.spans}) == files
 
 
 @pytest.mark.parametrize("target", ['"missing.rv"', '"."', "nolibrary", '"a\x00b"'])
-def test_what_cannot_be_read_is_said(compile_file, target):
+def test_unreadable_imports_are_reported(compile_file, target):
     assert codes_of(compile_file, main=f"import {target}") == ["RV016"]
 
 
-def test_binary_file_is_said(compile_file, tmp_path):
+def test_a_binary_file_is_reported(compile_file, tmp_path):
     (tmp_path / "one.rv").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(SpecError, match="it is not UTF-8 text"):
         compile_file(main='import "one.rv"')
 
 
-def test_time_may_stand_in_an_imported_file_once(compile_file):
-    """Two time lines contradict each other even over files."""
+def test_an_imported_file_may_declare_the_time_model(compile_file):
+    """A second declaration is an error, also in another file."""
     spec, _ = compile_file(main='import "one.rv"', one="time sampled")
     assert spec.time == "sampled"
     with pytest.raises(SpecError, match="RV011"):
@@ -98,7 +98,7 @@ def test_nothing_outside_the_project_is_read(compile_file, tmp_path, target):
 
 @pytest.mark.parametrize("allowed", [".git", "pyproject.toml", "RVMON_ALLOW_IMPORTS"])
 def test_a_project_shares_its_specifications(tmp_path, monkeypatch, allowed):
-    """So does a folder that is named."""
+    """A folder may be allowed by name."""
     if allowed == "RVMON_ALLOW_IMPORTS":
         monkeypatch.setenv(allowed, str(tmp_path / "common"))
     else:

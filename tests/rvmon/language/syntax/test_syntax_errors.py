@@ -1,4 +1,4 @@
-"""What people write who come from elsewhere is fixed in the words of the language."""
+"""Notations of other languages are recognised, and the message gives the rvmon syntax."""
 
 from tests.tools.each import each
 from tests.tools.findings import codes_of, findings_of
@@ -42,13 +42,13 @@ def first_finding(text):
         ("after 2 s released", "write `eventually[2 s, 2 s] (…)`"),
     ],
 )
-def test_what_is_owed(required, fix):
+def test_faults_in_consequents(required, fix):
     assert fix in first_finding(f"requirement R\n  upon asked\n  then {required}\n").help
 
 
 @each("word", ["always", "asked and", "(", "not"])
-def test_an_error_behind_thousands_of_words_is_found(word):
-    """What is looked for is found, or not, in one pass: each word tried anew would take hours."""
+def test_an_error_after_thousands_of_words_is_found(word):
+    """The search takes one pass; trying each word anew would take hours."""
     text = f"requirement R\n  upon asked\n  then {f'{word} ' * 2000}$\n"
     finding = first_finding(text)
     assert (finding.code, finding.spans[0].span.text) == ("RV001", "$")
@@ -100,7 +100,7 @@ def test_items(item, fix):
     assert fix in first_finding(item + "\n").help
 
 
-def test_a_trigger_and_what_is_owed_are_both_looked_at():
+def test_trigger_and_consequent_are_both_examined():
     text = "requirement R\n  upon eventually asked\n  then within 1 s no\n  at end: x\n"
     assert codes_of(compile_text, HEAD + text) == ["RV040", "RV012", "RV045"]
 
@@ -119,7 +119,7 @@ STATE = "signal state : {idle, on}\nrequirement R\n  always "
         ("requirement R always asked released", "found `released`, expected an operator", ""),
         ("signal z", "expected `,` or `:`", ""),
         ("requirement", "expected a name", ""),
-        # A word that starts like one of the language is not cut in two.
+        # A word that starts with a keyword is not split.
         *(
             (f"signal x : {word}", f"found `{word}`, ", f"`{fix}`")
             for word, fix in (("boool", "bool"), ("integer", "int"), ("reals", "real"))
@@ -132,7 +132,7 @@ STATE = "signal state : {idle, on}\nrequirement R\n  always "
         (f"{STATE}at 3 s released", "the end of the item", "`eventually[3 s, 3 s] (…)`"),
     ],
 )
-def test_what_is_found_and_expected_is_said_in_words(text, told, fix):
+def test_found_and_expected_symbols_are_named(text, told, fix):
     found = first_finding(f"{text}\n")
     assert told in found.message
     assert fix in found.help
