@@ -133,7 +133,8 @@ int main(void)
             }
         } else if (what == 'a') {
             rv_set_absent(m, (int32_t)t);
-        } else if (what == 'r') {
+        } else if (what == 'r') { /* a limited heap grants all again */
+            left = -1;
             code = rv_reset(m);
         } else if (what == 'n') {
             code = rv_keep_notes(m, NULL, NULL);

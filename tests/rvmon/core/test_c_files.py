@@ -156,18 +156,40 @@ requirement R
 """An attempt starts and its trigger becomes unknown within one call, which leaves the queue."""
 
 
+FORKED = """
+signal x : real
+signal p : bool
+event e
+requirement R
+  upon e
+  then F[0 ns, 9 ns] (p and x > v)
+  let v = x
+"""
+"""Each attempt has a run of its own, with notes, and is given samples by the value of `x`."""
+
+
 def test_an_allocation_that_fails_is_never_green(core_object, tmp_path):
-    """Whichever it is, of a heap of which each block is an allocation: attempts stand in queues."""
+    """Whichever it is, of a heap of which each block is an allocation: attempts stand in queues.
+
+    With memory again, the run after a reset is judged as if it had never been short.
+    """
     command = (*WATCHED, "-DCHUNK_SIZE=((size_t)16)")
-    samples = Sample(0, {"p": False, "q": False}), Sample(1, {"p": True}), Sample(50, {})
-    cases = [*judged("heap", 12), Case(rvmon.loads(STALE).checked, samples)]
+    stale = Sample(0, {"p": False, "q": False}), Sample(1, {"p": True}), Sample(50, {})
+    forked = tuple(Sample(t, {"x": t % 3, "p": t % 4 == 1, "e": t % 2 == 1}) for t in range(9))
+    cases = [
+        *judged("heap", 12),
+        Case(rvmon.loads(STALE).checked, stale),
+        Case(rvmon.loads(FORKED).checked, forked),
+    ]
     exported = Exported(tmp_path, cases, command, core_object(*command))
     spoilt = 0
-    for number, whole in enumerate(exported.judge([(number, HEAP) for number in range(13)])):
-        runs = exported.judge([(number, HEAP - 1 - granted) for granted in range(150)])
+    for number, whole in enumerate(exported.judge([(number, HEAP) for number in range(14)])):
+        limits = [(number, HEAP - 1 - granted) for granted in range(150)]
+        runs = [*exported.judge(limits), *exported.judge(limits, notes=True)]
         assert runs[0] == ["none"]
-        begun = [run for run in runs if run != ["none"]]
-        spoilt += sum(sum(map(is_spoilt, halves(run), halves(whole))) for run in begun)
+        for first, again in (halves(run) for run in runs if run != ["none"]):
+            spoilt += is_spoilt(first, halves(whole)[0])
+            assert without_memory(again) == without_memory(halves(whole)[1])
     assert spoilt > 250
 
 

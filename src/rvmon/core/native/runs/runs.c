@@ -106,18 +106,15 @@ run *new_run(home *h)
     made->gap = m->plan.header->gap;
     (void)cut_block(&c, made);
     c.block = arena_take(&m->memory, c.used);
-    if ((c.block == NULL) || !register_run(h, made)) {
+    if (c.block == NULL) {
         m->spoilt = true;
         return NULL;
     }
     made->block = c.block;
     c.used = 0;
     made->copied = cut_block(&c, made);
-    if (m->keeps_notes && !make_notes(made)) {
-        m->spoilt = true;
-        return NULL;
-    }
-    if (!margins_make(made)) {
+    /* Registered last: after a reset, a registered run is given samples even if it lacks memory. */
+    if ((m->keeps_notes && !make_notes(made)) || !margins_make(made) || !register_run(h, made)) {
         m->spoilt = true;
         return NULL;
     }
