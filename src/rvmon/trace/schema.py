@@ -176,8 +176,8 @@ def gaps_of(nan: str, no_update: Any) -> Gaps:
         UnknownNameError: `nan` is no known reading, or no cell can have the value `no_update`.
     """
     if nan not in READINGS_OF_NAN:
-        known = " or ".join(f"nan={one!r}" for one in READINGS_OF_NAN)
-        raise UnknownNameError(f"no reading of NaN {nan!r}: there is {known}")
+        expected = " or ".join(map(repr, READINGS_OF_NAN))
+        raise UnknownNameError(f"nan={nan!r}: expected {expected}")
     value = no_update.item() if hasattr(no_update, "item") else no_update
     if not isinstance(value, bool | int | float | str | None):
         raise UnknownNameError(

@@ -180,7 +180,10 @@ def test_a_value_may_stand_for_no_update(tmp_path):
     assert [len(one.values) for one in rows] == [3, 1, 0]  # the last has no end of a line
     assert judged(base(), MERGED, no_update=NAN).verdicts["R1"] == "P"
     for wrong in ({"nan": "gap"}, {"no_update": [1]}):
-        with pytest.raises(UnknownNameError, match=r"no reading of NaN|is not a value of a cell"):
+        with pytest.raises(
+            UnknownNameError,
+            match=r"nan=.*: expected 'unknown' or 'no update'|is not a value of a cell",
+        ):
             judged(base(), MERGED, **wrong)
 
 

@@ -197,7 +197,7 @@ def _table(content: Mapping[str, Any], key: str, what: str) -> Mapping[str, Any]
 def _choice(content: Mapping[str, Any], key: str, choices: type[_Choice]) -> _Choice | None:
     value = content.get(key)
     if value is not None and value not in list(choices):
-        raise RvmonError(f"{key} = {value!r}: there is {' and '.join(choices)}")
+        raise RvmonError(f"{key} = {value!r}: expected {' or '.join(choices)}")
     return None if value is None else choices(value)
 
 
@@ -230,7 +230,7 @@ def reading_schema(spec: CheckedSpec, schema: Schema, **options: Unpack[SchemaAr
         if list(given.values()).count(column) > 1:
             raise RvmonError(f"column `{column}` is mapped to two names: one column, one name")
     if clock is not None and clock not in list(Clock):
-        raise UnknownNameError(f"no clock `{clock}`: there is {' and '.join(Clock)}")
+        raise UnknownNameError(f"clock={clock!r}: expected {' or '.join(Clock)}")
     nan, no_update = options.get("nan"), options.get("no_update")
     return replace(
         schema,

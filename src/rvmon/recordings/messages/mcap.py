@@ -183,8 +183,8 @@ class _OtherMessages(Messages):
                 fault = f"its binary schema cannot be read ({first_line(error)})"
                 return Topic(name, type_name, {}, fault), bytes
             return Topic(name, type_name, buffers.leaves), buffers.decode
-        known = "JSON, MessagePack, CBOR, Protocol Buffers, FlatBuffers, CDR and ROS 1"
-        fault = f"its messages are encoded as `{shorten(encoding)}`: there is {known}"
+        known = "JSON, MessagePack, CBOR, Protocol Buffers, FlatBuffers, CDR or ROS 1"
+        fault = f"its messages are encoded as `{shorten(encoding)}`: expected {known}"
         return Topic(name, type_name, {}, fault), bytes
 
     def _object_leaves(

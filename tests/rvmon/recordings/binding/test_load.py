@@ -208,7 +208,7 @@ def test_definitions_that_a_bag_lacks_are_named(read, tmp_path):
     [
         ("bind = [", "no TOML: Invalid value"),
         ('clok = "log"', "no key `clok`: did you mean `clock`"),
-        ('clock = "wall"', "clock = 'wall': there is log and header"),
+        ('clock = "wall"', "clock = 'wall': expected log or header"),
         ("bind.speed = 3", r"\[bind\] `speed`: expected a table"),
         ('[bind.sped]\ntopic="/a"', r"\[bind\.sped\]: nothing named `sped` .* mean `speed`"),
         ('[bind.speed]\nvalue="x"', r"\[bind\.speed\]: which topic feeds it"),

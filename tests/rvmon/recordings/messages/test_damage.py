@@ -186,7 +186,7 @@ def test_options_of_columns_are_none_of_messages(tmp_path, spec):
     (tmp_path / "a.csv").write_text("t,speed,go\n0,1,0\n")
     with pytest.raises(rvmon.TraceError, match="use --map"):
         spec.evaluate(tmp_path / "a.csv", clock="header")
-    with pytest.raises(UnknownNameError, match="there is log and header"):
+    with pytest.raises(UnknownNameError, match="expected log or header"):
         spec.evaluate(path, clock="wall")
 
 
