@@ -156,7 +156,7 @@ def sends_transforms(topics: Mapping[str, Topic]) -> bool:
 def requested_pairs(names: Iterable[str]) -> list[tuple[str, str]]:
     """The pairs of frames requested by topics and names of the form `/tf/OUTER/INNER`.
 
-    >>> pairs_asked(["/tf/map/base", "tf.map.base.translation.x", "/odom"])
+    >>> requested_pairs(["/tf/map/base", "tf.map.base.translation.x", "/odom"])
     [('map', 'base')]
     """
     found: dict[tuple[str, str], None] = {}

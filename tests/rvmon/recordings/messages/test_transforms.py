@@ -8,7 +8,7 @@ from tests.tools.bags import START, write_ros1
 
 import rvmon
 from rvmon.errors import RvmonError, TraceError
-from rvmon.recordings.messages.transforms import Transform, pairs_asked
+from rvmon.recordings.messages.transforms import Transform, requested_pairs
 
 pytest.importorskip("rosbags")
 
@@ -103,7 +103,7 @@ def test_a_binding_reads_a_heading_and_a_circle_of_frames_is_nowhere(tmp_path):
     assert spec.evaluate(path, binding=tmp_path / "b.toml").verdicts["R"] == "P"
     with pytest.raises(TraceError, match="holds no sample"):
         values(path, "tf.map.a.translation.x")
-    assert pairs_asked(["tf", "/tf", "/odom"]) == []
+    assert requested_pairs(["tf", "/tf", "/odom"]) == []
 
 
 def test_a_pattern_is_the_one_topic_like_it_or_that_of_the_robot(tmp_path):
