@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
+from os.path import relpath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -197,20 +198,19 @@ class SpecFile(pytest.File):
     def collect(self) -> Iterator[RequirementItem]:
         """Yield the tests."""
         from rvmon.errors import RvmonError
+        from rvmon.recordings.places import found_recordings
         from rvmon.session import load
 
+        root = self.config.rootpath
+        patterns = [str(root / pattern) for pattern in self.config.getini(_RECORDINGS)]
         try:
             spec = load(self.path)
+            found = sorted({Path(path) for path in found_recordings(patterns)})
         except RvmonError as error:
             raise self.CollectError(str(error)) from None
-        root = self.config.rootpath
-        patterns = self.config.getini(_RECORDINGS)
-        found = sorted({path for pattern in patterns for path in root.glob(pattern)})
-        if not found:
-            raise self.CollectError(f"{_RECORDINGS} = {' '.join(patterns)}: no file matches")
         for recording in found:
             for name in spec.requirements:
-                shown = f"{recording.relative_to(root)}::{name}"
+                shown = f"{relpath(recording, root)}::{name}"
                 yield RequirementItem.from_parent(
                     self, name=shown, judge=Judge(spec, only=[name]), recording=recording
                 )
@@ -226,7 +226,7 @@ class RequirementItem(pytest.Item):
 
     def runtest(self) -> None:
         """Judge the requirement on the recording."""
-        self._judge.check(self._recording, allow_missing=True)
+        self._judge.check(self._recording)
         _conclude(self, [self._judge])
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> str:

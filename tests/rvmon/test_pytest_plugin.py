@@ -70,11 +70,14 @@ def test_an_unexpected_verdict_fails_the_test_with_an_explanation(folder):
 def test_specifications_are_tests_of_recordings(folder):
     (folder.path / "run.csv").write_text("t,closed,knock\n0,0,1\n3,,\n")
     (folder.path / "other.csv").write_text("t,closed,knock\n0,1,\n3,,\n")
-    folder.makeini("[pytest]\nrv_recordings = *.csv\n")
+    (folder.path / "unlike").mkdir()
+    (folder.path / "unlike/less.csv").write_text("t,closed\n0,0\n3,\n")
+    folder.makeini("[pytest]\nrv_recordings =\n  *.csv\n  unlike\n")
     told = folder.runpytest_subprocess("-n", "1", "--junitxml=out.xml", "-p", "no:cacheprovider")
-    told.assert_outcomes(failed=1, passed=3)
+    told.assert_outcomes(failed=2, passed=4)
     told.stdout.fnmatch_lines(["*other.csv::D2*", "*`closed` was true at 0 s*"])
-    told.stdout.re_match_lines([r"D1 +1 +1", r"D2 +1 +1"])
+    told.stdout.fnmatch_lines(["*less.csv::D1*", "*there is no column for*", "*`knock`*"])
+    told.stdout.re_match_lines([r"D1 +1 +1", r"D2 +2 +1"])
     assert '<property name="rv:D1" value="NT"' in (folder.path / "out.xml").read_text()
 
 
