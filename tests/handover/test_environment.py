@@ -1,4 +1,4 @@
-"""The handover as an environment of Gymnasium."""
+"""The handover as a Gymnasium environment."""
 
 import random
 import warnings
@@ -17,7 +17,7 @@ def _env(**options):
 
 
 def _episode(env, seed, steps=400):
-    """Random actions, now and then; what came of each step."""
+    """Random actions at random times; the result of each step."""
     rng = random.Random(seed)
     env.reset(seed=seed)
     for _ in range(steps):
@@ -28,8 +28,7 @@ def _episode(env, seed, steps=400):
             return
 
 
-def test_it_is_a_good_environment():
-    """As Gymnasium's own checker says."""
+def test_gymnasiums_checker_accepts_it():
     from gymnasium.utils.env_checker import check_env
 
     with warnings.catch_warnings():

@@ -1,4 +1,4 @@
-"""Campaigns: what they count, and that it follows from the seed alone."""
+"""Campaigns: their counts, which depend on the seed alone."""
 
 import json
 
@@ -30,7 +30,7 @@ def small(*, monitors=True, **more):
 
 
 def document(results):
-    """What `table.json` says, but for the seconds."""
+    """The content of `table.json` without the seconds."""
     content = table_document(summarise(results, SPECS))
     del content["seconds"]
     return to_json(content)
@@ -43,7 +43,7 @@ def results():
 
 @pytest.fixture(scope="module")
 def directed_results():
-    """Of a few: each of all is played by `test_directed.py`."""
+    """The results of a few directed tests; `test_directed.py` plays all of them."""
     few = [one for one in directed() if one.name in ("released", "mutant-releases-late")]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(of_handover, "directed", lambda: few)
@@ -62,15 +62,15 @@ def test_the_number_of_workers_changes_nothing(results):
 
 
 def test_random_tests_never_reach_the_release(results):
-    """The paper's coverage hole: the release block stays at 0 %, for want of a ready human."""
+    """The paper's coverage hole: the release block stays at 0 %, as the human is never ready."""
     for robot in summarise(results, SPECS).robots.values():
         for strategy in robot.strategies.values():
             assert strategy.statements["release"].percent == 0
             assert strategy.statements["reset"].percent > 50
 
 
-def test_tests_whose_signals_got_lost_are_repeated():
-    """The table without the fitted loss differs in these tests only."""
+def test_tests_with_lost_signals_are_repeated():
+    """The table without the fitted loss differs only in these tests."""
     chosen = plan(handover_campaign(("legacy",)), ("constrained",), tests=40, seed=1)
     played = execute(chosen, jobs=1)
     lost = [one for one in played.played if one.control is not None]
@@ -118,8 +118,8 @@ def test_every_count_has_an_example(results):
     assert set(examples.by_cell) == cells
 
 
-def test_a_failed_test_is_held_against_itself_without_fault(directed_results):
-    """A planted fault is best seen beside the robot as it is."""
+def test_a_failed_test_is_compared_with_its_run_without_the_fault(directed_results):
+    """A planted fault is easiest to see beside the unchanged robot."""
     failed = next(
         one.job for one in directed_results.played if one.job.test.name == "mutant-releases-late"
     )

@@ -74,8 +74,8 @@ def test_the_page_has_what_the_model_says(demo):
     assert 'title="the replayed witness of R1">T</a>' in page
 
 
-def test_the_paper_stands_beside_the_spread_over_seeds(demo):
-    """The counts that were kept hold what campaigns of these seeds count."""
+def test_the_paper_is_compared_with_the_spread_over_seeds(demo):
+    """The stored counts contain those of campaigns with these seeds."""
     found = spread()
     assert spread_text() in (demo / "report.html").read_text()
     campaign = replace(handover_campaign(("legacy",)), code=None)
@@ -102,7 +102,7 @@ def test_the_demo_leaves_all_its_files(demo):
 
 
 def test_the_terminal_fits_two_screens(demo):
-    """The paper's requirements, and of the others those that nobody knew to fail; Table 1 last."""
+    """The paper's requirements, and other unexpected failures; Table 1 is last."""
     lines = (demo / "printed").read_text().splitlines()
     assert len(lines) <= 90
     rows = [line.split()[0] for line in lines if re.match(r" [RT]\d+ .*\d", line)]
@@ -128,7 +128,7 @@ def test_directed_tests_say_which_others_failed(demo):
 
 
 def test_a_failing_test_is_shrunk(demo, tmp_path, capsys):
-    """To the protocol and the readings; the smallest test finds the fault again."""
+    """To the protocol and the readings; the smallest test still finds the fault."""
     test = demo / "tests/mutant-releases-late.json"
     assert main(["shrink", str(test), "--out", str(tmp_path)]) == 0
     assert "R1 fails: 6 of 9 actions" in capsys.readouterr().err
@@ -173,8 +173,8 @@ def test_a_strategy_of_another_robot_is_refused(capsys):
     assert "no test for the robot legacy: all of `disturbed` are for the robot correct" in told
 
 
-def test_what_an_earlier_campaign_left_is_told(tmp_path, capsys):
-    """Its files stay and are counted; what this one writes over is not among them."""
+def test_files_of_an_earlier_campaign_are_reported(tmp_path, capsys):
+    """They stay and are counted, except those that the new campaign replaces."""
     run = ["run", "--legacy", "--strategy", "pseudorandom", "--jobs", "1", "--out", str(tmp_path)]
     (tmp_path / "mine.txt").write_text("of somebody else")
     assert main([*run, "--tests", "2"]) == 0
@@ -189,7 +189,7 @@ def test_what_an_earlier_campaign_left_is_told(tmp_path, capsys):
 
 
 def test_a_replay_gives_the_verdicts_of_the_campaign(demo, capsys, tmp_path):
-    """One test alone, by the file that the campaign wrote; its recording is judged the same."""
+    """A single test, from the campaign's file; its recording has the same verdicts."""
     known = json.loads((demo / "table.json").read_text())["robots"]["correct"]["known_answers"]
     name = "mutant-releases-late"
     file = str(demo / "tests" / f"{name}.json")
@@ -206,7 +206,7 @@ def test_a_replay_gives_the_verdicts_of_the_campaign(demo, capsys, tmp_path):
 
 
 def test_a_replay_is_shown_by_foxglove(tmp_path):
-    """The scene beside verdicts and values, at the instants of the run."""
+    """With the scene, verdicts and values at the instants of the run."""
     reader = pytest.importorskip("mcap.reader")
     path = save(directed()[0], tmp_path)
     made = tmp_path / "x.mcap"
@@ -227,7 +227,7 @@ def test_a_replay_is_shown_by_foxglove(tmp_path):
 
 @pytest.mark.parametrize("robot", [[], ["--legacy"]])
 def test_the_unmodified_robot_passes_its_gates(robot, capsys):
-    """Of what people have written and of what the model says, whatever the seed."""
+    """The handwritten requirements and those of the model, with any seed."""
     strategies = "model-based,model-based-shortest,model-based-fastest"
     words = ["run", "--strict", "--strategy", strategies, "--seed", "5", "--jobs", "1"]
     assert main([*words, *robot]) == 0
@@ -258,7 +258,7 @@ sys.exit(cli.main())
 
 @pytest.mark.parametrize("seconds", [0.0, 0.6])
 def test_ctrl_c_at_a_terminal_reaches_all_processes(seconds):
-    """Whenever it comes, also while the workers start: no traceback, and 130 (or all was done)."""
+    """At any time, also while workers start: no traceback, and exit code 130 (or completion)."""
     words = ["run", "--strategy", "constrained", "--tests", "40", "--jobs", "2"]
     process = subprocess.Popen(  # noqa: S603 - our own program
         [sys.executable, "-c", _PROGRAM, *words],

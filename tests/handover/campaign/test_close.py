@@ -18,7 +18,7 @@ pytestmark = pytest.mark.campaign
 
 @pytest.fixture(scope="module")
 def closed(shared):
-    """A folder with a suite of a few tests, the exit code and what was printed."""
+    """A folder with a suite of a few tests, the exit code and the output."""
 
     def make(folder):
         told = io.StringIO()
@@ -56,7 +56,7 @@ def test_all_say_the_same_share(closed, capsys):
     capsys.readouterr()
 
 
-def test_what_the_model_excludes_is_proved_with_the_query(closed):
+def test_unreachable_items_are_proved_by_a_query(closed):
     """The deadlines of R1 and R3 are never nearly missed, by the model's bounds."""
     folder, _, told = closed
     proved = json.loads((folder / "closing.json").read_text())["proved"]
@@ -70,8 +70,8 @@ def test_what_the_model_excludes_is_proved_with_the_query(closed):
     assert "-->[<=539] (robot.judged or timedOut)" in " ".join(told.split())
 
 
-def test_nothing_that_is_called_unreachable_was_met(closed):
-    """Neither here nor, so far, in any campaign; each entry names something."""
+def test_no_unreachable_item_was_ever_hit(closed):
+    """Neither here nor in any stored campaign; each entry names an item."""
     folder, _, _ = closed
     document = json.loads((folder / "closing.json").read_text())
     assert document["wrong"] == []
@@ -99,8 +99,8 @@ def test_nonsense_is_refused(tmp_path, capsys):
     assert "no strategy `guessing`: there are pseudorandom" in capsys.readouterr().err
 
 
-def test_all_that_the_model_is_asked_is_a_query_of_it():
-    """By whatever item of the situations and requirements."""
+def test_all_questions_to_the_model_are_among_its_queries():
+    """For every item of situations and requirements."""
     items = [
         *(("situation", f"{g} × {p} × {at} × {o}") for g in ("yes", "no") for p in ("yes", "no")
           for at in ("yes", "no") for o in ("given", "kept")),

@@ -21,8 +21,8 @@ def test_there_are_mutants_of_all_states_and_numbers():
     assert "LEGACY" not in functions
 
 
-def test_a_robot_that_does_not_say_that_it_released_is_killed(tmp_path, capsys):
-    """R1 fails; of a robot that says so twice at one instant, T70."""
+def test_a_robot_that_does_not_report_its_release_is_killed(tmp_path, capsys):
+    """R1 fails; T70 fails for a robot that reports it twice at one instant."""
     tests = tmp_path / "tests"
     tests.mkdir()
     save(next(one for one in directed() if one.name == "released"), tests)

@@ -1,4 +1,4 @@
-"""A campaign that was ended in its midst goes on, and comes to the same as one that was not."""
+"""An interrupted campaign resumes and gives the result of an uninterrupted one."""
 
 import json
 import re
@@ -43,7 +43,7 @@ def files(folder):
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
-    """A campaign that nothing ended: its files, and its journal before it went."""
+    """An uninterrupted campaign: its files, and its journal before it was removed."""
     folder = tmp_path_factory.mktemp("whole")
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
@@ -67,7 +67,7 @@ def here(tmp_path, monkeypatch):
 
 @pytest.fixture
 def played(monkeypatch):
-    """The numbers of tests that were finished, as they are told."""
+    """The numbers of finished tests, as printed."""
     told = []
 
     def telling(plan, **options):
@@ -78,7 +78,7 @@ def played(monkeypatch):
 
 
 def left(folder, journal):
-    """A folder as a campaign leaves it that is killed when so much is written."""
+    """Write the folder that a killed campaign leaves."""
     folder.mkdir()
     (folder / NAME).write_bytes(journal)
 
@@ -105,8 +105,8 @@ def test_it_comes_to_the_same_wherever_it_was_killed(whole, here, played, capsys
 
 
 @pytest.mark.parametrize("first", [pytest.param(3, id="damage"), pytest.param(5, id="of two")])
-def test_what_lies_behind_damage_is_played_again(whole, here, played, first):
-    """So is what two have written at once, from where they met."""
+def test_tests_after_a_damaged_entry_are_played_again(whole, here, played, first):
+    """So are entries that two campaigns wrote at once, from their first overlap."""
     known, journal = whole
     lines = journal.splitlines(keepends=True)
     lines[first:first] = (
@@ -119,7 +119,7 @@ def test_what_lies_behind_damage_is_played_again(whole, here, played, first):
 
 
 def test_shards_are_joined(whole, here, played, capsys):
-    """What is played of each is not played again, be it half of one; what is missing is."""
+    """Tests that an interrupted shard has played are not repeated; missing ones are played."""
     assert main((*WORDS, "--shard", "2/2")) == 0
     assert main((*WORDS, "--shard", "1/2")) == 0
     told = capsys.readouterr()
@@ -136,7 +136,7 @@ def test_shards_are_joined(whole, here, played, capsys):
 def test_an_interrupted_campaign_keeps_what_is_finished_and_goes_on(
     whole, here, monkeypatch, capsys
 ):
-    """Exit 130; the table says how many of the planned tests it counts, and it counts them all."""
+    """Exit code 130; the table gives the number of tests counted and planned."""
 
     def interrupted(plan, **options):
         def press_ctrl_c(count):
@@ -202,7 +202,7 @@ def test_other_requirements_are_another_campaign(here, capsys):
     mine.write_text("spec mine\nevent done\nrequirement R1\n  eventually within 1 s done\n")
     (here / "table.txt").mkdir()
     words = [*WORDS, "--spec", "mine.rv"]
-    assert main(words) == 3  # the table has no place
+    assert main(words) == 3  # the table cannot be written
     kept = (here / NAME).read_bytes()
     mine.write_text(mine.read_text().replace("1 s", "2 s"))
     capsys.readouterr()
@@ -214,7 +214,7 @@ def test_other_requirements_are_another_campaign(here, capsys):
 
 @pytest.mark.parametrize("content", [b"", b"mine\n", b"2144df1c ok\n"])
 def test_a_file_that_is_no_journal_stays(here, capsys, content):
-    """It may be dear to somebody."""
+    """It may be somebody's file."""
     left(here, content)
     assert main(WORDS) == 2
     assert "holds no campaign" in capsys.readouterr().err

@@ -1,4 +1,4 @@
-"""The correct robot does what the model says; robots with faults do not."""
+"""The correct robot conforms to the model; robots with faults do not."""
 
 from dataclasses import replace
 
@@ -18,13 +18,13 @@ def network():
 
 @pytest.fixture(scope="module")
 def of_the_model():
-    """The tests that the model gives: it is searched for them once."""
+    """The tests from the model, which is searched once."""
     return model_based(4, seed=1)
 
 
 @pytest.mark.campaign
 def test_runs_of_the_correct_robot_conform(network, of_the_model):
-    """Those that follow the model, and others."""
+    """Of tests from the model, and others."""
     for test in [*pseudorandom(2, seed=1), *constrained(1, seed=1), *of_the_model[:2]]:
         assert check_run(network, run_test(test)).conforms is True, test.name
 

@@ -1,4 +1,4 @@
-"""What the robot owes in the world: the correct one owes nothing, robots that deceive are told."""
+"""Requirements about the world: the correct robot meets them, deceiving robots do not."""
 
 import inspect
 from dataclasses import replace
@@ -43,7 +43,7 @@ def other(**rules):
 
 
 def changed(method, before, after):
-    """The robot, with other words in one place of a method."""
+    """The robot with one place of a method replaced."""
     own = inspect.getsource(getattr(HandoverRobot, method))
     assert own.count(before) == 1
     source = inspect.getsource(handover).replace(own, own.replace(before, after))
@@ -53,7 +53,7 @@ def changed(method, before, after):
 
 
 def more(method, before, *statements):
-    """The robot, with further statements behind one of a method."""
+    """The robot with further statements after one of a method."""
     return changed(method, before, "; ".join([before, *statements]))
 
 
@@ -184,21 +184,21 @@ BY_SAMPLES = {
 
 @pytest.mark.parametrize("name", PLANTED)
 def test_a_planted_fault_fails_its_requirements(monkeypatch, name):
-    """Without it nothing of that test fails, as `test_directed.py` has it."""
+    """Without the fault the test has no failure, as `test_directed.py` shows."""
     fault, test, requirements = PLANTED[name]
     monkeypatch.setitem(mutants.MUTATIONS, name, fault)
     assert failed(TESTS[test], name) >= set(requirements.split())
 
 
 @pytest.mark.parametrize("requirement", BY_SAMPLES)
-def test_a_world_that_must_not_be_is_told(requirement):
-    """Forces on the hand and sensors that lie without a cause fail their requirement."""
+def test_an_inconsistent_world_fails(requirement):
+    """Forces on the hand, and wrong sensor readings without a fault, fail their requirement."""
     report = SPEC.evaluate(BY_SAMPLES[requirement], end=3)
     assert report.verdicts[requirement] == "F"
 
 
-def test_a_clamped_hand_bears_what_one_finger_presses():
-    """Forces are of single bodies: two fingers that clamp it do not add up."""
+def test_the_force_on_a_clamped_hand_is_that_of_one_finger():
+    """Forces are per body: those of two clamping fingers are not added."""
     world = set_up(TESTS["hand-hidden-by-noise"]).world
     world.run(17_200_000_000)
     scene = world.scene

@@ -1,4 +1,4 @@
-"""Which statements of the robot's code ran, by state."""
+"""Executed statements of the robot's code, by state."""
 
 import pytest
 
@@ -15,7 +15,7 @@ GROUPS = {group.name: group for group in code_groups(robot_code())}
 
 @pytest.fixture(scope="module")
 def measured():
-    """A handover that ends in a release, and one in which nobody comes: runs and hits."""
+    """The runs and hits of a handover with a release, and of one without a person."""
     meter = Meter(robot_code())
     runs, hits = {}, {}
     for name in ("released", "nobody-comes"):
@@ -41,8 +41,8 @@ def test_every_state_has_statements():
 
 
 @pytest.mark.campaign
-def test_a_release_runs_the_whole_release_and_nobody_none_of_it(measured):
-    """The block of the paper's coverage hole: 100 % by one test, 0 % by another."""
+def test_a_release_executes_its_block_completely(measured):
+    """The block of the paper's coverage hole: 100 % with a release, 0 % without a person."""
     _, hits = measured
     release = GROUPS[statements_name("release")]
     released, nobody = (score(hits[name], release) for name in ("released", "nobody-comes"))

@@ -1,4 +1,4 @@
-"""Whole runs: repeatable, equal with and without jumps, within the protocol's bounds."""
+"""Complete runs: repeatable, equal with and without time jumps, within the protocol's bounds."""
 
 import hashlib
 import itertools
@@ -58,7 +58,7 @@ def instants(run: Run, name: str) -> list[float]:
 
 
 def facts(run: Run) -> list[tuple[int, dict[str, object]]]:
-    """All that a run says in two-valued terms, with its instants."""
+    """All two-valued signals and events of a run with their instants."""
     kept = (
         (t, {name: value for name, value in values.items() if name not in NUMBERS})
         for t, values in run.samples
@@ -70,7 +70,7 @@ def facts(run: Run) -> list[tuple[int, dict[str, object]]]:
 def test_jumps_change_no_event(robot: str) -> None:
     gripped = 0
     for whole in pseudorandom(1, seed=5) + constrained(3, seed=5):
-        test = structs.replace(whole, horizon_s=80.0)  # what comes then is nothing
+        test = structs.replace(whole, horizon_s=80.0)  # nothing happens afterwards
         jumped = run_test(test, robot=robot)
         stepped = run_test(test, robot=robot, jump=False)
         assert facts(jumped) == facts(stepped)
@@ -93,8 +93,8 @@ def test_jumps_change_no_event_where_the_scene_surprises() -> None:
         assert facts(run_test(short)) == facts(run_test(short, jump=False))
 
 
-def test_signals_to_the_correct_robot_do_not_get_lost() -> None:
-    """Start-up loss was fitted to the robot of the paper's testbench, and is its alone."""
+def test_no_signal_to_the_correct_robot_is_lost() -> None:
+    """Loss at start-up was fitted to the robot of the paper's testbench only."""
     seed = next(seed for seed in range(100) if not draw(seed, startup_loss=True).connected)
     test = structs.replace(protocol_test(seed), startup_loss=True)
     assert not instants(run_test(test, robot="legacy"), "activateRobot")
@@ -128,7 +128,7 @@ def test_same_seed_same_run_in_every_process() -> None:
 
 
 def test_arm_is_slow_and_distance_is_fresh_while_anything_moves() -> None:
-    """Near the hand the tool keeps below 250 mm/s, and the distance is never old in motion."""
+    """Near the hand the tool is slower than 250 mm/s; the distance is up to date in motion."""
     run = run_test(protocol_test(4))
     distance, speed, measured = 9.0, 0.0, 0
     for t, values in run.samples:
@@ -172,7 +172,7 @@ def test_unknown_names_are_told(settings: dict[str, str], names: str) -> None:
 
 
 def test_loss_switched_off_changes_nothing_else() -> None:
-    """Without the fitted loss all other conditions of a seed stay as they were."""
+    """Without the fitted loss all other conditions of a seed are unchanged."""
     lost = 0
     for seed in range(500):
         fitted, plain = draw(seed, startup_loss=True), draw(seed, startup_loss=False)
@@ -187,7 +187,7 @@ def test_loss_switched_off_changes_nothing_else() -> None:
 
 
 def test_dead_sensors_are_unknown() -> None:
-    """A dead sensor's signal is unknown, and the robot gives up for want of its reading."""
+    """The signal of a dead sensor is unknown, and the robot gives up without a reading."""
     test = protocol_test(1, faults=SensorFaults(dropout=("gaze",)))
     run = run_test(test)
     values = [values["gaze_ok"] for _, values in run.samples if "gaze_ok" in values]
@@ -196,7 +196,7 @@ def test_dead_sensors_are_unknown() -> None:
 
 
 def test_slow_sensors_delay_the_decision() -> None:
-    """A robot with sensors that are 1 s late decides later, on what was then."""
+    """With sensors that are 1 s late the robot decides later, on older readings."""
     quick = run_test(protocol_test(1))
     slow = run_test(protocol_test(1, faults=SensorFaults(delay_s=1.0)))
     assert instants(slow, "released")

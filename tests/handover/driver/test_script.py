@@ -1,4 +1,4 @@
-"""An abstract test's actions as signals, waits and postures in time."""
+"""The actions of an abstract test become signals, waits and postures over time."""
 
 import random
 from collections.abc import Callable
@@ -18,7 +18,7 @@ from handover.world.world import HUMAN_SIGNALS
 
 @dataclass
 class Body:
-    """Notes what the script makes the human do."""
+    """Records the human's actions."""
 
     schedule: Schedule
     done: list[tuple[float, str, tuple[float | bool, ...]]] = field(default_factory=list)
@@ -88,14 +88,14 @@ NOTHING = (
         ),
         # Waits are in units of 50 ms.
         ([SetParam("time", 40)], {}, [], [], 3.0),
-        # Some actions of the alphabet do nothing and take no time; nor does to withdraw.
+        # Some actions of the alphabet do nothing and take no time, such as withdrawing.
         (NOTHING, {}, [], [], 1.0),
         ([Withdraw(), GRASP], {}, [], [(1.0, "withdraw"), (1.0, "grasp")], 1.0),
-        # The script goes on at the first poll after the robot has informed the human.
+        # The script continues at the first poll after the robot has informed the human.
         ([INFORM, GRASP], {"informed_at": 7.3}, [], [(7.4, "grasp")], 7.4),
-        # After 500 polls it ends; what comes after is not played.
+        # It ends after 500 polls; later actions are not played.
         ([INFORM, GRASP], {}, [], [], pytest.approx(101.0)),
-        # Who is not connected publishes nothing.
+        # A human who is not connected publishes nothing.
         ([SendSignal("activateRobot"), GRASP], {"connected": False}, [], [(3.2, "grasp")], 3.2),
     ],
 )
@@ -123,7 +123,7 @@ def test_leaving_the_task_makes_all_postures_bad() -> None:
 
 @pytest.mark.parametrize(("ok", "ranges"), [(1, p.GAZE_OK), (0, p.GAZE_BAD)])
 def test_gaze_is_drawn_from_its_ranges(ok: int, ranges: tuple[tuple[float, float], ...]) -> None:
-    """Offset, distance and angle lie in the paper's ranges, and are not always the same."""
+    """Offset, distance and angle are in the paper's ranges and vary."""
     played = play(*[SetParam("hgazeOk", ok)] * 50)
     looks = [how for _, _, how in played.body.done]
     assert len(set(looks)) == 50

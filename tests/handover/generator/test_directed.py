@@ -1,4 +1,4 @@
-"""The directed tests, played and judged by the specification of their robot."""
+"""The directed tests, judged by the specification of their robot."""
 
 from functools import cache
 from itertools import pairwise
@@ -13,21 +13,21 @@ from handover.generator.abstract_test import AbstractTest, directed
 from rvmon.cdv.system import Checker
 
 
-def test_each_says_which_situation_it_is_to_reach() -> None:
-    """In words of the coverage model, which the campaign looks for in its run."""
+def test_each_names_the_situation_that_it_reaches() -> None:
+    """In terms of the coverage model; the campaign checks that its run hits it."""
     assert [test.name for test in directed() if not test.reaches] == []
 
 
 @cache
 def spec_of(robot: str) -> rvmon.Spec:
-    """The specification of a robot: of all its tests one."""
+    """The specification of a robot, shared by all its tests."""
     return rvmon.load(spec_path(robot))
 
 
 @pytest.mark.campaign
 @pytest.mark.parametrize("test", directed(), ids=lambda test: test.name)
 def test_verdicts_are_those_the_file_expects(test: AbstractTest) -> None:
-    """Else nothing fails, and the robot goes from state to state as its protocol says."""
+    """No other requirement fails, and the robot's states follow its protocol."""
     assert test.robot is not None
     checker = Checker(spec_of(test.robot))
     checker.start()

@@ -1,4 +1,4 @@
-"""Tests as files: exact, strict, and with messages that say what is wrong."""
+"""Test files are exact, validated strictly, and refused with precise messages."""
 
 import pickle
 from pathlib import Path
@@ -45,8 +45,8 @@ GOOD = to_json(constrained(1, seed=0)[0])
         (None, "No such file"),
     ],
 )
-def test_wrong_files_are_told(text: bytes | None, message: str, tmp_path: Path) -> None:
-    """Each wrong file gives one message with the file, the place and the cause."""
+def test_invalid_files_are_refused(text: bytes | None, message: str, tmp_path: Path) -> None:
+    """Each gives one message with the file, the place and the cause."""
     path = tmp_path / "wrong.json"
     path.unlink(missing_ok=True)
     if text is not None:

@@ -15,7 +15,7 @@ from handover.world.faults import SceneFaults, SensorFaults
 
 
 def test_pseudorandom_actions_are_uniform() -> None:
-    """Of them there are 4 to 15, each so often; switches are 0 or 1, waits 1 to 100 units."""
+    """A test has 4 to 15 equally frequent actions; switches are 0 or 1, waits 1 to 100 units."""
     tests = pseudorandom(1000, seed=3)
     assert {len(test.actions) for test in tests} == set(range(4, 16))
     actions = [action for test in tests for action in test.actions]
@@ -45,7 +45,7 @@ def test_constrained_begin_with_the_protocol() -> None:
 
 
 def test_disturbed_tests_show_each_deviation() -> None:
-    """Each kind of fault of sensors and scene comes, alone too, and so does each person's way."""
+    """Every fault of sensors and scene occurs, also alone, and every deviation of the person."""
     tests = disturbed(400, seed=1)
     as_planned = [t for t in tests if t.faults == SensorFaults() and t.scene == SceneFaults()]
     assert 0.2 < len(as_planned) / 400 < 0.4
@@ -62,7 +62,7 @@ def test_disturbed_tests_show_each_deviation() -> None:
 
 
 def deviations(actions: tuple[Action, ...]) -> set[str]:
-    """In which ways a person departs from the protocol."""
+    """The ways in which a person departs from the protocol."""
     inform = ReceiveSignal("informHumanOfHandoverStart")
     before = actions[: actions.index(inform)] if inform in actions else actions
     found = {
@@ -80,8 +80,8 @@ def test_probabilities_of_the_person_add_up() -> None:
     assert {state for ways in PERSON.values() for _, _, state in ways} == {*PERSON, "leaves"}
 
 
-def test_numbers_of_the_person_have_a_source_or_are_called_free() -> None:
-    """Of a body each is in `FREE` or has its source below; of the rates all but two are there."""
+def test_numbers_of_the_person_have_a_source_or_are_listed_as_free() -> None:
+    """Each number of a body is in `FREE` or has its source below, and all rates but two."""
     text = Path(p.__file__).read_text("utf-8")
     section = text.partition("# --- human")[2].partition("# --- sensing")[0]
     line = r"([A-Z_]+): Final = .*\n"

@@ -1,4 +1,4 @@
-"""Tests from the model: templates are projections of witnesses, tests lie inside their windows."""
+"""Tests from the model: templates are projected witnesses, and tests stay in their windows."""
 
 import random
 
@@ -35,7 +35,7 @@ def postures(test):
 def test_one_test_for_each_expressible_requirement():
     """R1 to R4 give a test each; all follow the protocol up to the human's readiness.
 
-    R1's witness takes all postures well, R2's at least one badly. The seed decides.
+    R1's witness has all postures good, R2's at least one bad. The seed decides which.
     """
     tests = model_based(100, seed=3)
     assert [test.name[-2:] for test in tests] == ["R1", "R2", "R3", "R4"]
@@ -49,8 +49,8 @@ def test_one_test_for_each_expressible_requirement():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("policy", ["shortest", "fastest", "likely"])
-def test_chosen_times_are_those_of_some_run(policy):
-    """Whatever is chosen satisfies every limit that the witness puts on the projected instants."""
+def test_chosen_times_belong_to_some_run(policy):
+    """All choices satisfy every bound of the witness on the projected instants."""
     network = handover_network()
     (query,) = (q for q in network.queries if q.id == "R1")
     run = verify(network, query, policy=Policy(policy)).run
@@ -131,6 +131,6 @@ def test_projection_keeps_only_human_and_sensors():
 @pytest.mark.campaign
 @pytest.mark.parametrize(("requirement", "event"), [(0, "released"), (1, "withheld")])
 def test_the_robot_does_what_the_witness_shows(requirement, event):
-    """Played against the robot, R1's test ends in a release, R2's in a refusal."""
+    """Played with the robot, R1's test ends with a release, R2's with a refusal."""
     run = run_test(model_based(4, seed=1)[requirement], startup_loss=False)
     assert any(event in values for _, values in run.samples)

@@ -1,4 +1,4 @@
-"""The handover network: the seed's queries, the claims on all runs, and what it cannot say."""
+"""The handover network: the seed's queries, claims about all runs, and inexpressible ones."""
 
 import pytest
 from tests.tools.timed_regions import shows
@@ -21,7 +21,7 @@ def test_it_is_six_automata(network):
 
 @pytest.mark.parametrize("requirement", ["R1", "R2", "R3", "R4"])
 def test_the_seeds_queries_hold(network, requirement):
-    """R1 to R4 have a witness, and it is a run that shows what it should."""
+    """R1 to R4 have a witness, which is a run with the intended behaviour."""
     (query,) = (q for q in network.queries if q.id == requirement)
     outcome = verify(network, query)
     assert outcome.holds
@@ -31,7 +31,7 @@ def test_the_seeds_queries_hold(network, requirement):
 @pytest.mark.slow
 @pytest.mark.parametrize("claim", ["R2_all", "R4_all", "sound"])
 def test_claims_on_all_runs_hold(network, claim):
-    """No run releases on a bad reading, none goes on for ever, none gets stuck."""
+    """No run releases after a bad reading, continues for ever, or gets stuck."""
     (query,) = (q for q in network.queries if q.id == claim)
     assert verify(network, query).holds
 

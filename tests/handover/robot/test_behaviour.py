@@ -1,6 +1,6 @@
-"""In what the robot of the paper's testbench differs from the correct one.
+"""Differences between the robot of the paper's testbench and the correct one.
 
-What both do is told by the directed tests and by planted faults.
+Directed tests and planted faults cover their common behaviour.
 """
 
 from dataclasses import replace
@@ -33,8 +33,8 @@ def test_a_handover_goes_through_all_states(test: str) -> None:
 
 
 @pytest.mark.parametrize("signal", ["activateRobot", "humanIsReady"])
-def test_it_takes_any_signal_twice(signal: str) -> None:
-    """One latched signal, right or wrong, carries it through both waits."""
+def test_one_signal_serves_both_waits(signal: str) -> None:
+    """A latched signal, right or wrong, ends both waits."""
     test = TESTS["legacy-any-signal"]
     actions = tuple(
         structs.replace(one, signal=signal) if isinstance(one, SendSignal) else one
@@ -50,7 +50,7 @@ def test_it_reads_missing_as_bad_at_once() -> None:
 
 
 def test_its_polls_are_shared_and_slow_down(monkeypatch: pytest.MonkeyPatch) -> None:
-    """There are 500, of 0.2 s, for both waits together, and each of them subscribes anew."""
+    """Both waits share 500 polls of 0.2 s, and each poll subscribes again."""
 
     def waited_s() -> float:
         run = run_test(TESTS["legacy-one-signal-fast"])
@@ -59,7 +59,7 @@ def test_its_polls_are_shared_and_slow_down(monkeypatch: pytest.MonkeyPatch) -> 
     slow = waited_s()
     plain = replace(behaviour.LEGACY, resubscribes=False)
     monkeypatch.setitem(behaviour.BEHAVIOURS, "legacy", plain)
-    assert waited_s() == pytest.approx(0.5 + 470 * 0.2)  # 30 were before
+    assert waited_s() == pytest.approx(0.5 + 470 * 0.2)  # 30 came before
     assert slow > 100
 
 
@@ -67,7 +67,7 @@ def test_its_polls_are_shared_and_slow_down(monkeypatch: pytest.MonkeyPatch) -> 
 def test_its_sensing_times_out_by_a_parameter(
     monkeypatch: pytest.MonkeyPatch, timeout_s: int, event: str
 ) -> None:
-    """Which counts from when it informed the human."""
+    """The timeout counts from the instant at which it informed the human."""
     monkeypatch.setattr(p, "TIMEOUT_TIME_S", (timeout_s, timeout_s))
     run = run_test(TESTS["legacy-released"])
     assert [name for name in ("timed_out", "decide") if instants(run, name)] == [event]

@@ -1,4 +1,4 @@
-"""Every rule finds its own example, in the words of its page, and nothing in the fixed one."""
+"""Every rule reports the example of its page in the page's words, and nothing in the mended one."""
 
 import os
 from pathlib import Path
@@ -26,7 +26,7 @@ _MOST = 5
 
 
 def findings_about(code, text):
-    """What is found in a text by the pass that a code belongs to: check, analysis, a model's."""
+    """The findings in a text of the pass that a code belongs to: check, analysis, or model."""
     if code.startswith("TA"):
         return _findings_in_model(text)
     try:
@@ -39,7 +39,7 @@ def findings_about(code, text):
 
 
 def _findings_in_model(text):
-    """As its queries are decided; without any, as it is held against an empty recording."""
+    """By verifying its queries; without queries, by checking an empty recording against it."""
     try:
         network = loads_network(text, name="demo.ta") if text else load_network("none/demo.ta")
         for query in network.queries:
@@ -52,7 +52,7 @@ def _findings_in_model(text):
 
 
 def message_about(found):
-    """What is written about an example; of a long list the beginning and the end."""
+    """The message about an example; of a long list the start and the end."""
     if len(found) <= _MOST:
         return render_full(found)
     return f"{render_full(found[:1])}\n\n…\n\n{render_full(found[-1:])}"
@@ -63,7 +63,7 @@ def test_example_breaks_its_rule_and_the_fixed_one_none(code):
     shown, rule = page(code), RULES[code]
     found = findings_about(code, shown.example)
     own = [finding for finding in found if finding.code == code]
-    # RV006 speaks if there are so many of another rule.
+    # RV006 is reported if there are too many findings of another rule.
     assert {finding.code for finding in found} == {code} or (code == "RV006" and own)
     assert {finding.severity for finding in own} == {rule.severity}
     if code.startswith("RV"):

@@ -1,4 +1,4 @@
-"""What an analysis claims of a specification holds on every run that is tried."""
+"""The claims of an analysis hold on every run tried."""
 
 import math
 import random
@@ -40,7 +40,7 @@ requirement R13 upon b and not p then for 1 s not c
 
 
 def analysis_of(text):
-    """The analysis of a specification's text, however long it takes."""
+    """The analysis of a specification's text without a time limit."""
     return analyse(compile_spec(rvmon.loads(text).checked), seconds=math.inf)
 
 
@@ -51,7 +51,7 @@ def analysed():
 
 @pytest.mark.slow
 def test_known_answers(analysed):
-    """Contradictions, conflicts with runs that trigger them, and what is superfluous."""
+    """Contradictions, conflicts with runs that trigger them, and redundant requirements."""
     found = analysed.examination
     sets = {conflict.ids: conflict.offsets for conflict in found.conflicts}
     assert sets == {
@@ -78,16 +78,16 @@ def test_known_answers(analysed):
 @each(
     ("time", "required", "passes"),
     [
-        ("held", "for 1 s v", False),  # v ends, and what was required at its last instant fails
+        ("held", "for 1 s v", False),  # v ends, and the obligation at its last instant fails
         ("held", "for 1 s w", True),
         ("held", "within 1 s not v", True),
         ("sampled every 100 ms", "for 1 s v", False),
         ("sampled every 1 s", "for 900 ms v", True),  # nothing is required between positions
-        ("sampled", "for 1 s v", True),  # so much time may lie between two samples
+        ("sampled", "for 1 s v", True),  # two samples may be that far apart
     ],
 )
 def test_a_clock_that_is_started_at_every_position(time, required, passes):
-    """How much time goes by between positions counts for what can come of an episode."""
+    """The time between positions matters for the possible verdicts of an episode."""
     text = f"time {time}\nsignal v, w : bool\nrequirement R\n  whenever v\n  then {required}\n"
     assert analysis_of(text).examination.possible["R"].pass_ is passes
 
@@ -189,7 +189,7 @@ def test_the_least_conflict_is_found_and_its_timeline_triggers_it(name):
     ],
 )
 def test_implications(text, implied):
-    """By several, by one with a wider trigger, by what holds always; not by a narrower trigger."""
+    """By several requirements, by a wider trigger, by an invariant; not by a narrower trigger."""
     found = analysis_of("event a, b\nsignal p, q : bool\n" + text).examination.implications
     assert {(one.implied, one.by) for one in found} == implied
 
@@ -247,7 +247,7 @@ def _random_responses(rng):
 
 
 def _all_met(conflict):
-    """A run on which attempts that are triggered as the conflict says have all passed."""
+    """A goal of a search: a run on which all attempts triggered as in the conflict pass."""
 
     def goal(example):
         passed = {
@@ -268,7 +268,7 @@ def _all_met(conflict):
 
 
 def _fails_alone(one):
-    """A run on which an attempt fails, and those that are said to imply it have passed."""
+    """A goal of a search: a run on which the implied requirement fails and the others pass."""
 
     def goal(example):
         verdicts = {(a.requirement, a.triggered): a.verdict.value for a in example.attempts}
@@ -295,8 +295,8 @@ def test_check_analyse(tmp_path, says):
     assert "not decided" in says(0, "check", path, "--analyse", "--seconds", "0").out
 
 
-def test_help_speaks_of_what_is_there(tmp_path, says):
-    """No deadline is asked for where there is one, and no trigger is narrowed that is not there."""
+def test_help_fits_the_requirement(tmp_path, says):
+    """It proposes no deadline if there is one, and no narrower trigger if there is none."""
     path = tmp_path / "a.rv"
     path.write_text(
         "signal v : real\nevent go\nrequirement TAUT\n"
@@ -311,8 +311,8 @@ def test_help_speaks_of_what_is_there(tmp_path, says):
 
 
 @pytest.mark.parametrize("policy", ["strict", "strong", "fail"])
-def test_a_policy_that_lets_nothing_pass(policy):
-    """What holds to the end stays open, or fails: the policy is named as the cause."""
+def test_a_policy_under_which_nothing_passes(policy):
+    """Attempts held to the end stay open, or fail: the message names the policy."""
     text = f"signal p : bool\nrequirement R\n  always p\n  at end: {policy}\n"
     (finding,) = analysis_of(text).findings
     assert finding.code == "RV072"
@@ -320,8 +320,8 @@ def test_a_policy_that_lets_nothing_pass(policy):
 
 
 @pytest.mark.slow
-def test_of_many_requirements_no_more_is_listed_than_the_budget_lets_be_looked_at():
-    """Two hundred make a million triples, which need not all be kept at once to look at none."""
+def test_combinations_of_many_requirements_stay_within_the_budget():
+    """Two hundred requirements have a million triples, which are not held in memory at once."""
     text = "spec s\nsignal x : real\nevent e\n" + "".join(
         f"requirement R{n}\n  upon e\n  then within {n + 1} ms x > {n}\n" for n in range(200)
     )

@@ -1,4 +1,4 @@
-"""Drawn automata: their conditions lead where the machine goes."""
+"""Drawn automata: the conditions on their edges agree with the automaton."""
 
 import random
 import re

@@ -108,7 +108,7 @@ class Read:
         return self.names[state]
 
     def classes(self, letters):
-        """How many states no word of such letters makes one: every other pair is marked apart."""
+        """The number of states that words of these letters distinguish, by marking pairs."""
         pairs = [(one, other) for one in self.names for other in self.names if one < other]
         apart = {pair for pair in pairs if self.names[pair[0]] != self.names[pair[1]]}
         while True:
@@ -124,7 +124,7 @@ class Read:
         return sum(all((one, it) in apart for one in range(it)) for it in self.names)
 
     def reached(self, letters):
-        """The states that words of such letters come to."""
+        """The states that words of these letters reach."""
         found = [self.start]
         for state in found:
             found += [to for x in letters if (to := self.after(state, x)) not in found]
@@ -159,7 +159,7 @@ def test_random_formulas(data):
             read.after(state, letter)  # exactly one
     assert read.classes(read.letters) == len(read.reached(read.letters)) == len(read.names)
     if not set(read.propositions) <= set("pqr"):
-        return  # a combination of signals is one proposition there
+        return  # a combination of signals is one proposition in the file
     tableau = Tableau(formula)
     word = data.draw(st.lists(st.frozensets(st.sampled_from("pqr")), min_size=1, max_size=5))
     possible = tableau.possible(word)
@@ -168,7 +168,7 @@ def test_random_formulas(data):
 
 
 def test_states_that_differ_only_where_something_is_unknown_are_one():
-    """Of `p <-> eventually always p` nothing is ever decided: one state is enough."""
+    """`p <-> eventually always p` is never decided: one state is enough."""
     spec = loads(
         "spec s\nsignal p : bool\nrequirement R\n  upon start\n  then p iff eventually always p\n"
     )
@@ -194,7 +194,7 @@ def test_letters_that_cannot_be(data):
     except RvmonError:
         return
     if not all(re.fullmatch(r"x > \d", name) for name in read.propositions):
-        return  # a combination of comparisons is one proposition there
+        return  # a combination of comparisons is one proposition in the file
     holding = {
         value: frozenset(
             place for place, name in enumerate(read.propositions) if value > float(name[-1])

@@ -1,4 +1,4 @@
-"""What was awaited and came after the deadline."""
+"""Events and states that came after their deadline."""
 
 from tests.tools.each import each
 

@@ -1,4 +1,4 @@
-"""Example timelines get from the definitions the verdict that they are shown for."""
+"""Example timelines have their verdict by the definitions."""
 
 import random
 
@@ -86,8 +86,8 @@ def test_captured_values_and_instances():
         assert set(found) == set(KINDS), name
 
 
-def test_a_trigger_beside_signals_that_go_stale_need_not_come():
-    """However many of them there are: the shortest run is one in which they all speak."""
+def test_signals_that_go_stale_do_not_prolong_an_example():
+    """However many there are: in the shortest run all of them are updated."""
     spec = rvmon.loads(
         "signal mode : {hold, rtl}\nsignal north, east, height : real [m] stale after 200 ms\n"
         "requirement Q\n upon mode == rtl\n"
@@ -105,7 +105,7 @@ def test_what_cannot_be_is_not_shown():
     assert found.runs <= 50
 
 
-def test_waiting_that_leads_ever_on_does_not_hide_the_other_runs():
+def test_waiting_without_end_does_not_hide_other_runs():
     """What starts again at all times is never at rest; runs of two samples are tried all the same.
 
     What has to stay true as long as it is true fails when it ends, and can never pass.

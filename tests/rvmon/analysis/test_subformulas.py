@@ -1,4 +1,4 @@
-"""The truth shown of each subformula is that of the definitions."""
+"""The truth shown for each subformula agrees with the definitions."""
 
 import random
 from dataclasses import replace

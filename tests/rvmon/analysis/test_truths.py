@@ -1,4 +1,4 @@
-"""Short runs that stand alike go on alike."""
+"""Runs in equal situations continue equally."""
 
 import random
 
@@ -15,7 +15,7 @@ pytestmark = pytest.mark.law
 
 
 def drawn(rng, valuations, start, count):
-    """Samples that say of every name what it is, from an instant on."""
+    """Samples from an instant on that give every name a value."""
     t, made = start, []
     for _ in range(count):
         made.append(Sample(t, dict(rng.choice(valuations))))
@@ -24,7 +24,7 @@ def drawn(rng, valuations, start, count):
 
 
 def behind(example, end):
-    """What becomes of attempts behind an instant, as it is seen from there."""
+    """The outcomes of attempts after an instant, relative to it."""
     began = [
         (one.triggered - end, one.decided and one.decided - end, one.verdict)
         for one in example.attempts
@@ -39,8 +39,8 @@ def behind(example, end):
 
 
 @pytest.mark.law
-def test_equal_situations_go_on_alike():
-    """Whatever comes behind them; time models, captured values and instances among it."""
+def test_equal_situations_continue_equally():
+    """Whatever follows them, with all time models, captured values and instances."""
     for seed in range(16):
         rng = random.Random(seed)
         pairs = 0

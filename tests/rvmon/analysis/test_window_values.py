@@ -1,4 +1,4 @@
-"""What a window came to where a requirement failed, as `rvmon run` tells it."""
+"""The values of windows at a failure, as `rvmon run` shows them."""
 
 import json
 
@@ -9,7 +9,7 @@ from rvmon.cli import main
 
 @pytest.fixture
 def files(tmp_path):
-    """Writes a specification beside the recording, and names both."""
+    """Writes a specification and a recording; returns their paths."""
 
     def written(requirement, time="held"):
         spec, rows = tmp_path / "s.rv", tmp_path / "s.csv"
@@ -22,7 +22,7 @@ def files(tmp_path):
 
 
 def told(words, capsys):
-    """By number of the failed attempt, the values that are told."""
+    """The values shown, by number of the failed attempt."""
     assert main(["run", *words, "--format", "json"]) == 1
     found = json.loads(capsys.readouterr().out)["requirements"]["R"].get("values", {})
     return {int(number): values for number, values in found.items()}

@@ -1,4 +1,4 @@
-"""Databases of coverage to merge."""
+"""Coverage databases for tests of merging."""
 
 import random
 from collections.abc import Iterable
@@ -10,9 +10,9 @@ from rvmon.coverage.database import Database
 
 
 def random_database(seed: int) -> Database:
-    """A database in memory that has parts of a model and of a set of tests.
+    """A database in memory with parts of a model and of a set of tests.
 
-    What two of them both have is the same in both, but for the places of groups, items and tests.
+    Shared parts of two databases are equal but for the order of groups, items and tests.
     """
     rng = random.Random(seed)
     database = Database.in_memory()
@@ -41,7 +41,7 @@ def random_database(seed: int) -> Database:
 
 
 def merged(databases: Iterable[Database]) -> Database:
-    """A database in memory with all that others hold."""
+    """A database in memory, merged from others."""
     together = Database.in_memory()
     for database in databases:
         together.merge(database)

@@ -1,4 +1,4 @@
-"""What coverage says of items and tests, held against what can be counted by hand or by force."""
+"""Questions about coverage, compared with counts by hand or by brute force."""
 
 import pytest
 from tests.rvmon.coverage.merged import merged, random_database
@@ -35,8 +35,8 @@ def test_the_share_is_that_of_the_hits_of_all_runs(door):
         assert answers.scores[name] == by_run.score(together, group)
 
 
-def test_growth_and_what_each_test_adds(door):
-    """A goal of three hits is reached by the test that brings the third."""
+def test_growth_and_contributions_of_tests(door):
+    """A goal of three hits is reached by the test with the third hit."""
     answers = Answers(door)
     steps = answers.steps
     assert [named(door, step.added) for step in steps] == [
@@ -53,8 +53,8 @@ def test_growth_and_what_each_test_adds(door):
 
 
 @pytest.mark.slow
-def test_a_ranking_covers_all_with_few_tests():
-    """As much as the whole campaign, each test adding to it, rarely more than the least."""
+def test_a_ranking_covers_everything_with_few_tests():
+    """As much as the whole campaign; each test adds something, and few are superfluous."""
     for seed in range(25):
         together = merged(random_database(4 * seed + one) for one in range(4))
         coverage = together.coverage()

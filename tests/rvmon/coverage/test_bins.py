@@ -1,4 +1,4 @@
-"""Which bins and combinations runs hit, by hand."""
+"""Bins and combinations hit by runs, counted by hand."""
 
 import math
 import operator
@@ -18,7 +18,7 @@ event e, pick(id: int)
 
 
 def counts(goals, samples, group="c", time="held", end=None):
-    """By item, how often it was hit."""
+    """The hits of each item."""
     spec = loads(f"time {time}\n{SIGNALS}{goals}\n")
     recording = spec.recording([(t, values) for t, values in samples])
     hits = spec.coverage_model.of(recording, end)
@@ -56,7 +56,7 @@ def test_forms_of_bins(bins, samples, expected):
 
 
 def test_many_comparisons_of_one_signal():
-    """Each follows the value, wherever it goes: by one constant, by many, to none."""
+    """Bins follow the value across one constant, across many, and to unknown."""
     signs = {
         "<": operator.lt,
         "<=": operator.le,
@@ -136,7 +136,7 @@ def test_combinations_have_names_of_their_own():
 
 @pytest.mark.parametrize("goals", ["", "coverpoint c = p {yes: true}"])
 def test_an_unknown_way_to_settle_is_refused(goals):
-    """Also where nothing is to be covered."""
+    """Also if there is nothing to cover."""
     model = loads(f"{SIGNALS}{goals}\n").coverage_model
     with pytest.raises(UnknownNameError, match="settle='later': expected 'now' or 'next'"):
         model.monitor(settle="later")

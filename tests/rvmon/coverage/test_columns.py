@@ -1,4 +1,4 @@
-"""Coverage of columns, which is counted over many rows at once, is that of their samples."""
+"""Coverage of columns, counted over many rows at once, equals that of their samples."""
 
 import json
 import random
@@ -41,7 +41,7 @@ def test_columns_hit_what_their_samples_hit(time, rows):
 
 
 def random_points(rng, with_further):
-    """Coverpoints over comparisons; `with_further`: of all kinds, and at occasions."""
+    """Random coverpoints of comparisons; `with_further`: of all kinds, some sampled at events."""
 
     def condition():
         if with_further and rng.random() < 0.3:
@@ -62,7 +62,7 @@ def random_points(rng, with_further):
 
 
 def random_table(rng, rows):
-    """Columns of which some change at every row, now and then NaN, or two rows at one instant."""
+    """Random columns; some change at every row, some cells are NaN, some rows share an instant."""
     repeats, nans = rng.random() < 0.3, rng.random() < 0.4
     steps = [rng.choice([10, 10, 100]) for _ in range(rows)]
     if repeats:
@@ -87,7 +87,7 @@ def random_table(rng, rows):
 
 
 def samples_of(table):
-    """The rows of one instant as one sample: the last values, and whether an event occurred."""
+    """The rows of one instant as one sample, with the last values and the events."""
     samples = {}
     for row, t in enumerate(table["t_ns"].tolist()):
         values = samples.setdefault(t, {})

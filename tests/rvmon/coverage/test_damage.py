@@ -1,4 +1,4 @@
-"""Files that are no whole databases of coverage: an error with place, cause and fix."""
+"""Damaged coverage databases: errors with place, cause and fix."""
 
 import os
 import random
@@ -21,7 +21,7 @@ def path(tmp_path):
 
 
 def refused(path):
-    """What is said of a file: to who reads it, and the same to who would write; it stays."""
+    """The error for reading a file, which is the same for writing; the file stays as it is."""
     before = path.read_bytes()
     with pytest.raises(CoverageError) as reading:
         read([path])
@@ -151,8 +151,8 @@ def test_an_empty_file_is_begun_and_not_read(tmp_path):
     assert len(read([path]).entries) == 4
 
 
-def test_names_with_signs_of_an_address_are_names(tmp_path):
-    """`?`, `#` and `%` say nothing to SQLite."""
+def test_file_names_may_have_signs_of_addresses(tmp_path):
+    """`?`, `#` and `%` have no meaning for SQLite here."""
     path = tmp_path / "a?mode=memory#b%20c ü.cov"
     with Database.open(path) as database:
         database.record(TestRecord("t"), {})

@@ -1,4 +1,4 @@
-"""Databases of coverage: what is written is read back, whole, once, and by name."""
+"""Coverage databases: what is written is read back completely, once, and by name."""
 
 import pytest
 from msgspec.structs import replace
@@ -64,7 +64,7 @@ def test_what_cannot_be_hit_is_no_goal(path):
 
 
 def test_a_test_is_written_once(path):
-    """The same test, recorded again: the earlier record stays; another seed is another test."""
+    """If a test is recorded again, the earlier record stays; another seed is another test."""
     test = TestRecord("t", "k", seed=2**70, when=5, seconds=1.0)
     hits = hits_of(("gaze", "yes"), first=3)
     with Database.open(path) as database:
@@ -81,7 +81,7 @@ def test_a_test_is_written_once(path):
 
 
 def test_tests_are_in_the_order_of_their_campaigns():
-    """A campaign after the one that began before it; within one, by number, then by time."""
+    """Campaigns by their start; within one by number, then by time."""
     with Database.in_memory() as database:
         database.declare(door_model())
         for name, campaign, number, when in [
@@ -196,8 +196,8 @@ def test_a_name_that_is_no_text_is_refused():
             database.explain("gaze", "yes", "\udc00")
 
 
-def test_a_place_where_nothing_can_be_written_is_read(path, monkeypatch):
-    """As from a medium that is read only: SQLite keeps nothing beside the file then."""
+def test_a_database_on_a_read_only_medium_is_read(path, monkeypatch):
+    """SQLite then creates no further files beside it."""
     with Database.open(path) as database:
         fill(database)
     monkeypatch.setattr(database_file.os, "access", lambda *_: False)

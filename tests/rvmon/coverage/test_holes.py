@@ -1,4 +1,4 @@
-"""A hole says what it is, why it may be open, and what would close it."""
+"""A hole has a description, a possible reason, and a way to close it."""
 
 import pytest
 from tests.tools.each import each
@@ -65,7 +65,7 @@ HIT = Hit(1)
 
 
 def group(name, subject, *items):
-    """A group of some items."""
+    """A group with some items."""
     return group_of(name, subject, [*map(Item, items)])
 
 

@@ -1,4 +1,4 @@
-"""Merging databases: in any order, in any groups, any number of times, the same comes out."""
+"""Merging databases is commutative, associative and idempotent."""
 
 import random
 

@@ -1,4 +1,4 @@
-"""What runs show of requirements."""
+"""Coverage of requirements by runs."""
 
 import random
 
@@ -14,14 +14,14 @@ requirement R upon a then within 2 s b
 
 
 def seen(text, samples, group="R", end=None):
-    """By item, how often it was hit."""
+    """The hits of each item."""
     spec = loads(text)
     hits = spec.coverage_model.of(spec.recording(samples), end)
     return {item: hit.count for item, hit in hits.get(group, {}).items()}
 
 
 def answered(after):
-    """A trigger at 1 s and an answer so many seconds later."""
+    """A trigger at 1 s and an answer some seconds later."""
     return [(0, {"a": False, "b": False}), (1, {"a": True}), (1 + after, {"b": True}), (9, {})]
 
 
@@ -33,8 +33,8 @@ def test_deadlines():
     assert seen(ANSWER, answered(2.000000001)) == {"triggered": 1, "after the deadline": 1}
 
 
-def test_what_only_a_failure_shows_has_no_goal():
-    """A run without failure can show all that is wanted."""
+def test_items_that_only_failures_hit_have_no_goal():
+    """A run without failures can reach all goals."""
     spec = loads(ANSWER)
     groups = spec.coverage_model.model.groups
     early = [(0, {"a": True, "b": True}), (0.5, {"a": False, "b": False})]
@@ -70,8 +70,8 @@ requirement A4 upon a and b then always[0 s, 2 s] once[0 s, 3 s] (b and c)
 
 
 @pytest.mark.slow
-def test_parts_that_only_a_failure_tells_are_no_goals():
-    """No run without a failure shows one, and runs with failures show each."""
+def test_parts_that_only_failures_decide_have_no_goal():
+    """Only runs with failures hit them."""
     rng = random.Random(1)
     spec = loads(FORMS)
     groups = spec.coverage_model.model.groups
@@ -101,22 +101,22 @@ def test_parts_that_only_a_failure_tells_are_no_goals():
 
 
 def test_automata():
-    """No edge leads to `P` where only the end of the run meets what is owed."""
+    """There is no edge to `P` if only the end of the run can meet the consequent."""
     assert seen(ANSWER, answered(1), "`R` edges") == {"start → A": 1, "A → P": 1}
     assert seen(ANSWER, answered(1), "`R` locations").keys() == {"start", "A", "P"}
     spec = loads("signal a, b : bool\nrequirement R\n  upon a\n  then always not b\n")
     assert [*spec.coverage_model.model.groups["`R` locations"].items] == ["start", "A", "F"]
 
 
-def test_attempts_in_doubt_show_nothing():
-    """Neither is it known that there was one, nor where it went."""
+def test_attempts_in_doubt_hit_nothing():
+    """It is not known that there was an attempt, nor which locations it visited."""
     samples = [(0, {"a": None, "b": False}), (1, {"b": True}), (5, {})]
     assert seen(ANSWER, samples) == {}
     assert seen(ANSWER, samples, "`R` edges") == {}
 
 
 def test_requirements_without_automaton_and_with_instances():
-    """What a network judges has no locations; all instances of a requirement are one."""
+    """Networks have no locations; all instances of a requirement are counted together."""
     text = """signal a, b : bool
 event pick(id: int)
 event put(id: int)

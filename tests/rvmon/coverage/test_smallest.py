@@ -1,4 +1,4 @@
-"""The fewest tests that cover as much as all."""
+"""The smallest set of tests that covers as much as all."""
 
 import random
 from itertools import combinations
@@ -7,7 +7,7 @@ from rvmon.coverage.ranking import smallest
 
 
 def needed(rows, goals):
-    """What all tests reach together."""
+    """The hits of all tests together."""
     total = {}
     for row in rows:
         for item, count in row.items():
@@ -16,7 +16,7 @@ def needed(rows, goals):
 
 
 def reaches(rows, places, wanted):
-    """Whether some of the tests hit as much."""
+    """Whether some of the tests hit as much as all."""
     return all(sum(rows[at].get(item, 0) for at in places) >= wanted[item] for item in wanted)
 
 

@@ -1,4 +1,4 @@
-"""Processes that write: at once, and killed in their midst."""
+"""Processes that write to one database at once, or are killed while writing."""
 
 import signal
 import sqlite3

@@ -1,4 +1,4 @@
-"""Letters tell apart what the formula can tell apart, and no more."""
+"""Letters distinguish what the formula distinguishes, and no more."""
 
 from tests.tools.build import eventually, no, p, requirement, two
 
@@ -13,7 +13,7 @@ def alphabet(formula, **more):
 
 
 def test_a_proposition_read_one_way_needs_two_digits():
-    """Unknown is false to the pessimist and true to the optimist."""
+    """Unknown is false for the lower bound and true for the upper bound."""
     found = alphabet(eventually(p))
     assert found.size == 2
     assert found.pessimistic[0][UNKNOWN] == found.pessimistic[0][FALSE]
@@ -21,7 +21,7 @@ def test_a_proposition_read_one_way_needs_two_digits():
 
 
 def test_a_proposition_read_both_ways_needs_four():
-    """Read as p and as not p, an unknown value differs from both known ones in either run."""
+    """Read as p and as not p, an unknown value differs from both known ones."""
     found = alphabet(two(eventually(p), "and", eventually(no(p))))
     assert found.size == 4
     digits = {*found.pessimistic[0], *found.optimistic[0]}

@@ -1,4 +1,4 @@
-"""Automata of one shape, constructed once."""
+"""Automata of the same shape are constructed once."""
 
 from collections.abc import Iterator
 from random import Random
@@ -20,7 +20,7 @@ BUDGET = Budget(locations=30, clocks=3, rows=200, clauses=12)
 
 
 def required_by(requirement: Requirement, factory: Factory) -> Iterator[tuple[Next, Alphabet]]:
-    """What the attempts of a requirement owe, those in doubt too."""
+    """The obligations of a requirement's attempts, including those in doubt."""
     obligation: Obligation | None = lower(requirement, factory)
     while obligation is not None:
         yield factory.next(obligation.required), alphabet_of(obligation.required)
@@ -56,7 +56,7 @@ def test_an_automaton_of_a_known_shape_is_that_of_its_formula(part):
     found = []
     for seed in range(20 * part, 20 * (part + 1)):
         spec = random_spec(Random(seed), Profile(mixed=False, captures=False, for_each=False))
-        # A tick more or less makes a difference to the first of them alone.
+        # One tick more or less changes the first of them only.
         for factor in (1, 500, 1_000_000, 7_000_001):
             for required, alphabet in _retimed(spec, factor):
                 made = shapes.reduced(required, alphabet, BUDGET)

@@ -1,4 +1,4 @@
-"""Open attempts in runs: what the builder proves; that it is so `core/test_queue.py` shows."""
+"""Queues of open attempts: which automata allow them. `core/test_queue.py` tests their use."""
 
 from tests.tools.each import each
 
@@ -9,12 +9,12 @@ from rvmon.logic.automaton import moves_in_runs
 @each(
     ("required", "is_proved"),
     [
-        # What most requirements are moves in runs: with one clock, from the trigger.
+        # Most requirements have one clock, started at the trigger: whole queues move at once.
         ("upon e then within 1 h p", True),
         ("upon e then for 2 s not p", True),
         ("upon e then p until[1 s, 3 s] q", True),
         ("upon e then eventually[2 s, 5 s] p", True),
-        # A run could lose its order: only attempts that share their clocks are stepped together.
+        # The order could change: only attempts with equal clocks are stepped together.
         ("whenever p then within 2 s q", False),
         ("upon e then within 2 s (p and for 1 s q)", False),
     ],

@@ -1,4 +1,4 @@
-"""Automata: how large they get, and that they do the work they should."""
+"""Construction of automata: their size, and what fits the budget."""
 
 import pytest
 from tests.tools.build import always, eventually, no, p, q, r, requirement, two
@@ -35,7 +35,7 @@ def build(formula, budget=None, **more):
     ],
 )
 def test_usual_requirements_stay_small(formula, whenever, locations, clocks, classes):
-    """The shapes that people write need a handful of locations and at most one clock."""
+    """Requirements as people write them need few locations and at most one clock."""
     automaton = build(formula, **({"whenever": whenever} if whenever else {}))
     assert len(automaton.locations) <= locations
     assert automaton.clocks == clocks
@@ -54,14 +54,14 @@ def test_many_propositions_do_not_make_many_classes():
 
 @each("high", [None, 5])
 def test_conjunctions_of_recurring_demands_close(high):
-    """A location is what of three is still required, however many ways lead there."""
+    """A location is the set of obligations left of three, whatever path leads there."""
     demands = two(eventually(p, 0, high), "and", eventually(q, 0, high))
     demands = two(demands, "and", eventually(r, 0, high))
     assert build(always(demands)).clocks == (0 if high is None else 3)
 
 
 def test_respawned_windows_do_not_close():
-    """A window above zero that is opened again and again outgrows the budget, which is said."""
+    """Windows that start above zero and are reopened exceed the budget, which is reported."""
     with pytest.raises(DoesNotCloseError, match="more than"):
         build(always(two(p, "->", eventually(q, 20, 50))))
 

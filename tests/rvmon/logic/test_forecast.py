@@ -1,4 +1,4 @@
-"""Forecasts of open attempts: what no continuation, or every one, can bring."""
+"""Forecasts of open attempts: verdicts that no continuation, or every continuation, gives."""
 
 import pytest
 from hypothesis import given, settings
@@ -19,7 +19,7 @@ TEXT = "spec t\ntime {}\nsignal p, q, r : bool\nrequirement R\n  upon start then
 
 
 def forecast_of(formula, *samples, time="held"):
-    """What is forecast of an attempt after samples at whole seconds."""
+    """The forecast of an attempt after samples at whole seconds."""
     monitor = loads(TEXT.format(time, formula)).monitor()
     for t, values in enumerate(samples or [{"p": formula.startswith("p until"), "q": False}]):
         monitor.step(t, values)
@@ -53,8 +53,8 @@ def test_what_is_still_possible(formula, time):
 
 
 @pytest.mark.parametrize("most", [0, 1, 3])
-def test_a_search_that_outgrows_its_limit_says_nothing(most, monkeypatch):
-    """What is not searched to the end is not forecast; what is, is forecast as ever."""
+def test_a_search_beyond_its_limit_forecasts_nothing(most, monkeypatch):
+    """An incomplete search gives no forecast; complete ones do as before."""
     for name in ("MOST_TRIED", "_MOST_APART"):
         monkeypatch.setattr(f"rvmon.logic.forecast.{name}", most)
     said = {formula: forecast_of(formula) for formula in CASES}
@@ -63,8 +63,8 @@ def test_a_search_that_outgrows_its_limit_says_nothing(most, monkeypatch):
 
 
 @each(("time", "forecast"), [("held", "F"), ("sampled", None), (CLOCKED, "F")])
-def test_a_window_without_a_position_asks_for_nothing(time, forecast):
-    """In held time every tick is a position, of a clock some are; samples may leave it out."""
+def test_a_window_without_a_position_requires_nothing(time, forecast):
+    """In held time every tick is a position, with a clock some are; samples may skip a window."""
     both = "(always[2 s, 3 s] p) and always[2 s, 3 s] not p"
     assert forecast_of(both, time=time) == forecast
 
@@ -104,8 +104,8 @@ def test_a_forecast_is_no_verdict():
 
 
 @each("time", ["held", CLOCKED])
-def test_the_network_forecasts_by_what_it_knows(time):
-    """A trigger that was seen binds what may come; one that may still come binds nothing."""
+def test_a_network_forecasts_from_known_triggers(time):
+    """A trigger in the past restricts continuations; a possible later one does not."""
     formula = "(always (p -> within 5 s q)) and always not q"
     quiet, seen = {"p": False, "q": False}, {"p": True}
     assert forecast_of(formula, quiet, time=time) is None
@@ -114,8 +114,8 @@ def test_the_network_forecasts_by_what_it_knows(time):
 
 
 @each("time", ["held", CLOCKED])
-def test_a_forecast_of_what_lies_below_the_past_errs_on_neither_side(time):
-    """What an operator of the past has around it may come to be either; the rest is forecast."""
+def test_a_forecast_below_a_past_operator_is_sound(time):
+    """Operators around a past operator may become either; the rest is forecast."""
     back = "(once[0, 2 s] (p and within 9 s q)) and (within 9 s r)"
     samples = {"p": True, "q": False, "r": False}, {"p": True}
     assert forecast_of(back, *samples, time=time) is None
@@ -123,8 +123,8 @@ def test_a_forecast_of_what_lies_below_the_past_errs_on_neither_side(time):
     assert forecast_of(f"not ({back} and for 9 s not r)", *samples, time=time) == "P"
 
 
-def test_more_than_is_looked_at_is_not_forecast():
-    """Each nanosecond of a second asks for something of its own: nothing is said of all of them."""
+def test_too_many_positions_are_not_forecast():
+    """Each nanosecond of a second has an obligation of its own: there is no forecast."""
     formula = "(for 1 s within 3 s p) and eventually[3 s, 5 s] p"
     assert forecast_of(formula, {"p": False, "q": False}, {}) is None
 

@@ -1,4 +1,4 @@
-"""Formulas of the spec to core formulas."""
+"""Formulas of a specification become core formulas."""
 
 import pytest
 from tests.tools.build import (
@@ -28,7 +28,7 @@ def required(formula, **more):
 
 
 def test_equal_meanings_become_one_object():
-    """Duals and De Morgan's variants of a formula are the same node of one factory."""
+    """Duals and De Morgan variants of a formula are the same node of a factory."""
     factory = Factory()
     pairs = [
         (no(eventually(p, 0, 3)), always(no(p), 0, 3)),
@@ -45,7 +45,7 @@ def test_equal_meanings_become_one_object():
 
 
 def test_present_and_past_become_one_proposition():
-    """What is known at once is not taken apart, so that letters stay few."""
+    """Formulas known at once stay whole, which keeps the number of letters small."""
     node = required(
         eventually(two(two(p, "and", no(q)), "or", once(compared(x, ">", 1), 0, 5)), 0, 3)
     )
@@ -65,12 +65,12 @@ def test_present_and_past_become_one_proposition():
     ],
 )
 def test_horizon(formula, ticks):
-    """The horizon is the sum of nested bounds, none if anything is unbounded."""
+    """The horizon is the sum of nested bounds; there is none with an unbounded operator."""
     assert horizon(required(formula)) == ticks
 
 
-def test_a_trigger_that_speaks_of_the_future_is_refused():
-    """Nothing is known at once of what lies ahead; in what is required it may stand anywhere."""
+def test_a_trigger_about_the_future_is_refused():
+    """Its truth is not known at once; a consequent may have future operators anywhere."""
     with pytest.raises(UnmonitorableError):
         required(p, upon=once(eventually(p, 0, 2), 0, 3))
     assert isinstance(required(once(eventually(p, 0, 2), 0, 3), upon=e), Since)
@@ -78,7 +78,7 @@ def test_a_trigger_that_speaks_of_the_future_is_refused():
 
 @pytest.mark.slow
 def test_nested_equivalences_take_no_time():
-    """What stands for `<->` has each operand twice; yet each is read once."""
+    """The expansion of `<->` has each operand twice, yet each is lowered once."""
     nested = "p"
     for _ in range(30):
         nested = f"(q <-> {nested})"

@@ -1,4 +1,4 @@
-"""Reduced automata: smaller, and the same to whoever looks."""
+"""Reduced automata are smaller and behave the same."""
 
 from bisect import bisect_right
 
@@ -30,7 +30,7 @@ def built(formula, **more):
 
 
 def nothing(_residual) -> None:
-    """No location is to be told from another."""
+    """A label that distinguishes no locations."""
 
 
 def rows(automaton: Automaton) -> int:
@@ -38,9 +38,9 @@ def rows(automaton: Automaton) -> int:
 
 
 class TableMachine:
-    """An automaton as it runs.
+    """A running automaton.
 
-    A token is a location with, for each clock, the instant at which it was started. A row is a
+    A token is a location with the start instant of each clock. A row is a
     location with a region for each clock.
     """
 
@@ -64,16 +64,16 @@ class TableMachine:
         return one.targets[edge], anchors
 
     def cuts(self, location: int) -> tuple[tuple[int, ...], ...]:
-        """For each clock of a location the ages from which on it acts differently."""
+        """For each clock of a location the ages from which it behaves differently."""
         return self.automaton.locations[location].cuts
 
     def time_value(self, token: Token, t: int) -> int:
-        """The truth once time has come to `t` and no position came."""
+        """The truth when time has reached `t` without a position."""
         return self.automaton.time_values[self.row(token, t)]
 
 
 def walk(automaton, word):
-    """What is decided, and when; the truth in time and at the end at every step."""
+    """The decision and its instant; the truth over time and at the end for every step."""
     machine = TableMachine(automaton)
     token, seen = machine.start, []
     for t, letter, gap in word:
@@ -81,7 +81,7 @@ def walk(automaton, word):
         if token[0] <= PASSED:
             return [*seen, (t, token[0])]
         seen += [machine.time_value(token, later) for later in range(t, t + gap + 1)]
-        if seen[-1] != seen[0]:  # time alone has decided
+        if seen[-1] != seen[0]:  # decided by time alone
             return seen
     row = machine.row(token, word[-1][0])
     return [*seen, automaton.end_values[row]]
@@ -122,7 +122,7 @@ def test_a_reduced_automaton_decides_the_same(data, steps):
     ],
 )
 def test_equivalent_locations_are_one(formula):
-    """Locations that only their text tells apart are merged where no text is asked for."""
+    """Locations that differ only in their text are merged if no text is requested."""
     original, told = built(formula)
     some = (reduce(original, nothing), reduce(original, told), original)
     sizes = [len(one.locations) for one in some]
@@ -130,8 +130,8 @@ def test_equivalent_locations_are_one(formula):
     assert sizes[0] <= sizes[1] <= sizes[2]
 
 
-def test_what_time_alone_decides_is_kept_apart():
-    """`F[0,3] false` is decided by time, `G[4, inf) false` by a position: the same moves else."""
+def test_locations_that_time_decides_stay_distinct():
+    """`F[0,3] false` is decided by time, `G[4, inf) false` by a position; moves are equal."""
     by_time = two(p, "and", eventually(false, 0, 3))
     by_position = two(always(false, 4), "and", eventually(q, 9))
     original, _ = built(two(by_time, "or", two(no(p), "and", by_position)))

@@ -1,4 +1,4 @@
-"""Pages as their elements and texts."""
+"""Reads pages as elements and texts."""
 
 from html.parser import HTMLParser
 
@@ -28,6 +28,6 @@ class Reader(HTMLParser):
             self.texts[tag] = self.texts.get(tag, "") + data
 
     def dangling(self):
-        """Addresses within the page that are nowhere on it."""
+        """Links within the page that lead nowhere."""
         links = {attributes["href"] for tag, attributes in self.tags if tag == "a"}
         return {link for link in links if link.removeprefix("#") not in self.ids}

@@ -1,4 +1,4 @@
-"""The page of coverage: what it says, where its links lead, and that names are only names."""
+"""The page of coverage: its content, its links, and that names never become markup."""
 
 import re
 
@@ -93,8 +93,8 @@ def test_campaigns_are_compared(door):
     assert read.dangling() == set()
 
 
-def test_what_failed_as_expected_is_not_wrong(door):
-    """It is listed apart with its reason; what else failed in the same test is wrong."""
+def test_expected_failures_are_listed_apart(door):
+    """With their reason; other failures of the same test count."""
     failed = {"D1": "F", "D2": "F", "D3": "P"}
     why = {"D1": "the grip is worn", "D3": "it may"}
     door.record(TestRecord("worn", "week 2", verdicts=failed, expected=why), {})

@@ -15,7 +15,7 @@ SPEC = rvmon.loads(
 
 
 def reports():
-    """A run with one requirement per verdict, and a reason that XML cannot hold as it is."""
+    """A run with a requirement for each verdict, and a reason that XML has to escape."""
     attempts = [
         Attempt("D0", 1, 0, 5, Verdict.PASS),
         Attempt("D1", 1, 0, 5, Verdict.FAIL, reason='<"\x00&'),

@@ -1,4 +1,4 @@
-"""What notebooks show, and the notebook of the examples."""
+"""Output in notebooks, and the example notebook."""
 
 import ast
 import json
@@ -15,7 +15,7 @@ HOSTILE = "</style><script>alert(1)</script>"
 
 
 def shown(book):
-    """What each cell of code shows, the cells run one after the other as a kernel does."""
+    """The output of each code cell, executed in order as a kernel does."""
     names = {}
     for cell in book["cells"]:
         if cell["cell_type"] == "code":
@@ -32,14 +32,14 @@ def test_the_notebook_runs(monkeypatch):
     spec, report, failed, decided = shown(json.loads((FOLDER / "verdicts.ipynb").read_text()))
     assert "then within 500 ms for 1 s speed &lt;= 1 mm/s" in spec
     assert "B1 failed, B2 failed" in report
-    assert report.count('class="on"') == 3  # a bar per attempt
+    assert report.count('class="on"') == 3  # one bar for each attempt
     assert "deadline" in failed
     assert "B1#1" in decided
     assert max(map(len, (spec, report, failed, decided))) < 20_000
 
 
-def test_nothing_of_a_piece_reaches_the_notebook():
-    """Its style is scoped, it has no script, and no text of a file becomes markup."""
+def test_a_fragment_does_not_affect_the_notebook():
+    """Its styles are scoped, it has no script, and text of files is escaped."""
     text = (
         f'spec s\nsignal b : bool\nrequirement R "{HOSTILE}"\n  always b\n  severity "{HOSTILE}"\n'
     )
@@ -53,8 +53,8 @@ def test_nothing_of_a_piece_reaches_the_notebook():
         assert "<script" not in piece
 
 
-def test_themes_of_notebooks_come_before_the_systems():
-    """Both sets of colours, the verdicts' and the page's, follow either."""
+def test_the_theme_of_a_notebook_takes_precedence():
+    """The colours of verdicts and of the page follow the notebook first, then the system."""
     piece = rvmon.loads("signal b : bool\nrequirement R\n  always b\n")._repr_html_()
     assert piece.count("[data-jp-theme-light=false]") == 2
     assert piece.count(":not([data-jp-theme-light=true] *)") == 2

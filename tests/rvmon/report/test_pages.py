@@ -1,4 +1,4 @@
-"""What all pages of reports have to be for those who read them: legible, reachable, named."""
+"""All report pages are legible, fit their window, and name their controls."""
 
 from dataclasses import replace
 

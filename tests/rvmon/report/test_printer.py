@@ -1,4 +1,4 @@
-"""Lines and tables of the terminal: what is foreign is shown, columns stay below each other."""
+"""Lines and tables on a terminal: control characters are visible, columns are aligned."""
 
 import io
 import re
@@ -15,7 +15,7 @@ ROWS = [
 
 
 def printed(width, rows=ROWS, right=()):
-    """A table as lines."""
+    """The lines of a table."""
     file = io.StringIO()
     Printer(file, width).table(["", "verdict", "requirement"], rows, right)
     return file.getvalue().splitlines()

@@ -1,4 +1,4 @@
-"""The page of a run: what it opens on, what it says, and that it is safe and small."""
+"""The page of a run: what it opens first, its content, its safety and its size."""
 
 import json
 import math
@@ -41,7 +41,7 @@ requirement D3 "The door closes in the end"
 
 
 def judged(name, samples, spec=None, end=20.0):
-    """A run of `(seconds, values)`, judged."""
+    """The report of a run given as `(seconds, values)`."""
     spec = spec or rvmon.loads(SPEC, name="door.rv")
     trace = spec.recording(samples)
     report = spec.evaluate(trace, until=end)
@@ -49,7 +49,7 @@ def judged(name, samples, spec=None, end=20.0):
 
 
 def door(name="monday", answer=None, gap=0.2):
-    """A knock at 5 s, answered after so many seconds or never; the door is closed at 0 s."""
+    """A knock at 5 s, answered after some seconds or never; the door is closed at 0 s."""
     samples = [(0.0, {"closed": True, "gap": gap}), (5.0, {"knock": True})]
     if answer is not None:
         samples.append((5.0 + answer, {"closed": False}))
@@ -57,13 +57,13 @@ def door(name="monday", answer=None, gap=0.2):
 
 
 def content(run=None, **more):
-    """A page about a run."""
+    """The page of a run."""
     spec, one = run or door()
     return RunPage(run=one, spec=spec.checked, command="again --please", **more)
 
 
 def section_of(shown, attempt):
-    """What a page says of one attempt."""
+    """The section of one attempt."""
     return re.search(f'<section id="{attempt}".*?</section>', run_page(shown), re.DOTALL)[0]
 
 
@@ -72,8 +72,8 @@ def opened(page):
     return next(a["data-open"] for tag, a in Reader(page).tags if tag == "main")
 
 
-def test_it_opens_on_the_first_failure_with_one_sentence_and_its_part_underlined():
-    """Requirement, run, instant and cause, in the window's title too; the line with its number."""
+def test_it_opens_the_first_failure_with_one_sentence_and_the_cause_underlined():
+    """With requirement, run, instant and cause, also in the title; the line has its number."""
     page = run_page(content())
     assert opened(page) == "D1-1"
     read = Reader(page)
@@ -126,8 +126,8 @@ def test_hostile_names_steer_nothing_and_scripts_find_them():
 
 
 @pytest.mark.slow
-def test_without_failure_it_opens_on_what_is_open():
-    """Requirements that were never triggered say so; what passed is folded."""
+def test_without_failures_it_opens_open_attempts():
+    """Requirements never triggered are marked; passed ones are folded."""
     samples = [(0.0, {"closed": True, "gap": 1.0})]
     assert opened(run_page(content(judged("t", samples)))) == "D2-1"
     samples.append((19.0, {"knock": True}))
@@ -162,7 +162,7 @@ def test_page_and_text_say_the_same_of_the_input(capsys):
 def test_each_part_of_an_attempt_has_a_row():
     """Trigger and consequent, when they were true and where nobody knows, open where it failed.
 
-    The door stays closed: `not closed` is never true; what is required is not known near the end.
+    The door stays closed: `not closed` is never true; the consequent is not known near the end.
     """
     section = section_of(content(), "D1-1")
     rows = re.search(r'<details class="parts" open.*?</details>', section, re.DOTALL)[0]
@@ -170,13 +170,13 @@ def test_each_part_of_an_attempt_has_a_row():
     shown = {re.search(r"<code[^>]*>(.*?)</code>", row)[1]: row for row in rows[:-1]}
     assert list(shown) == ["knock", "within 2 s not closed", "not closed"]
     assert [row.count('class="on"') for row in shown.values()] == [1, 0, 0]
-    assert all('class="unknown"' not in row for row in shown.values())  # the run lasts to 20 s
+    assert all('class="unknown"' not in row for row in shown.values())  # the run lasts until 20 s
     late = judged("late", [(0.0, {"closed": True}), (19.0, {"knock": True})])
     parts = section_of(content(late), "D1-1")
     assert 'class="unknown"' in parts.split("within 2 s not closed</code>")[1].split("</div>")[1]
 
 
-def test_a_number_is_drawn_in_its_range_with_threshold_and_offending_sample():
+def test_a_number_is_drawn_with_its_threshold_and_the_violating_sample():
     """Known up to 5 s and from 10 s on, at which it fails; a margin is above and below."""
     spec = rvmon.loads("signal x : real [m]\nrequirement R\n  always x > 1 m\n")
     samples = [(0.0, {"x": 3}), (5.0, {"x": None}), (10.0, {"x": 0.5})]
@@ -213,8 +213,8 @@ def test_a_window_ends_with_the_decision_if_nothing_else_ends_it():
         assert found == [kind]
 
 
-def test_the_nearest_passing_attempt_is_the_reference():
-    """Laid over it from trigger to trigger."""
+def test_the_nearest_passed_attempt_is_overlaid():
+    """The two are aligned at their triggers."""
     samples = [(0.0, {"closed": True}), (2.0, {"knock": True}), (3.9, {"closed": False})]
     others = [door("far", answer=0.1)[1], judged("near", samples)[1]]
     section = section_of(content(others=others), "D1-1")
@@ -232,7 +232,7 @@ event  look
 
 
 def looks(name, gaps, spec, *, ok=True):
-    """A run that looks at a gap each second."""
+    """A run that measures a gap each second."""
     samples = [(float(t), {"gap": gap, "ok": ok, "look": True}) for t, gap in enumerate(gaps)]
     return judged(name, samples, spec, end=float(len(gaps)))[1]
 
@@ -292,8 +292,8 @@ def test_the_scene_stands_where_the_cursor_is():
     assert len(data["scene"]["times"]) == 11
 
 
-def test_signals_that_were_not_kept_are_not_drawn_as_unknown(tmp_path):
-    """What came over standard input has its verdicts, and the page says what is missing."""
+def test_signals_that_were_not_recorded_are_not_drawn_as_unknown(tmp_path):
+    """A run from standard input has verdicts, and the page says that signals are missing."""
     spec, run = door()
     report = replace(run.report, trace="-")
     (path,) = write_run_pages(tmp_path, spec.checked, [report], lambda _: [], lambda _: "judge -")
@@ -316,7 +316,7 @@ def test_the_script_runs_in_a_browser(chromium, tmp_path):
 
 
 def shown_sections(html):
-    """Ids of the sections that are open."""
+    """The ids of the open sections."""
     return [
         a["id"] for tag, a in Reader(html).tags if tag == "section" and a.get("class") == "open"
     ]
@@ -351,7 +351,7 @@ def test_all_requirements_stand_over_the_whole_recording():
 
 @pytest.mark.slow
 def test_several_recordings_get_a_list(tmp_path):
-    """With totals and severities, the most failures first; also of files that have one name."""
+    """With totals and severities, most failures first; files may have the same name."""
     spec = rvmon.loads(SPEC + "  severity high\n")
     runs = {
         "week/a/bad.csv": door()[1],
@@ -364,7 +364,7 @@ def test_several_recordings_get_a_list(tmp_path):
     index = (tmp_path / "index.html").read_text()
     links = [a["href"] for tag, a in Reader(index).tags if tag == "a"]
     assert all((tmp_path / link.partition("#")[0]).exists() for link in links)
-    assert len(links) == 3 * (1 + len(spec.requirements))  # one to each verdict
+    assert len(links) == 3 * (1 + len(spec.requirements))  # one link for each verdict
     named = re.findall(r'<a href="[^"#]*">([^<]*)</a></th>', index)
     assert named == ["b/bad.csv", "a/bad.csv", "index.csv"]
     rows = {row.partition("<")[0]: row for row in index.split('<th scope="row">')[1:4]}

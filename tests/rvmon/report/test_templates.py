@@ -1,4 +1,4 @@
-"""Templates escape what they are given: none switches that off, or leaves an attribute bare."""
+"""Templates escape their values: none disables that or leaves an attribute unquoted."""
 
 import re
 from importlib import resources
@@ -22,8 +22,8 @@ def test_what_a_template_writes_is_escaped(name):
 
 
 @pytest.mark.parametrize("kind", [one.value for one in TrackKind])
-def test_no_style_of_something_else_takes_a_lane_out_of_its_row(kind):
-    """A lane has its kind as a class beside `plot`: no selector begins with that class alone."""
+def test_no_other_style_applies_to_a_lane(kind):
+    """A lane has the classes `plot` and its kind; no selector starts with the kind alone."""
     assets = resources.files("rvmon.report") / "assets"
     styles = "".join(one.read_text() for one in assets.iterdir() if one.name.endswith(".css"))
     assert f".plot.{kind}" in styles

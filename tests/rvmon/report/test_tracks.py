@@ -1,4 +1,4 @@
-"""What timelines show of signals and events."""
+"""Timelines of signals and events."""
 
 import random
 from itertools import pairwise
@@ -56,8 +56,8 @@ def track(name, samples, requirement=R1, absent=()):
     return next(one for one in tracks if one.name == name)
 
 
-def test_names_concerned_have_tracks_with_the_thresholds_of_either_side():
-    """Those of the trigger first; an event without source is not drawn as if it never happened."""
+def test_names_of_a_requirement_have_tracks_with_all_thresholds():
+    """Names of the trigger come first; an event without a source is not drawn as absent."""
     assert names_of_requirement(R1) == ("go", "mode", "gap", "pick")
     assert names_of_requirement(R2) == ("ok", "other")
     assert thresholds(R1, "gap") == (Threshold(">=", 0.05), Threshold("<", 1.0))
@@ -217,7 +217,7 @@ def test_where_nothing_comes_a_look_sees_what_came_last(at):
 
 
 def test_a_switch_that_goes_stale_is_on_or_off(tmp_path):
-    """In rows of a file, too, its values are truth values and no numbers."""
+    """Also from rows of a file: its values are truth values, not numbers."""
     spec = rvmon.loads("signal p : bool stale after 2 s\nrequirement R always p")
     (tmp_path / "a.csv").write_text("t,p\n0,true\n1,false\n2,true\n8,true\n")
     held = HeldRecording(spec.recording(tmp_path / "a.csv").pieces(), [])
@@ -228,7 +228,7 @@ def test_a_switch_that_goes_stale_is_on_or_off(tmp_path):
 
 
 def test_while_it_is_lost_nothing_is_drawn_as_known():
-    """Up to the first update at the last instant or behind, be it the same value."""
+    """Until the first update at or after the end of the outage, even with the same value."""
     samples = [Sample(t, {"gap": 2.0, "go": True}) for t in (0, 4, 6, 9)]
     own = HeldRecording(samples, [Outage(3, 8, "lost", frozenset({"gap"}))])
     changes = changes_of(SPEC, own)

@@ -1,4 +1,4 @@
-"""Tables of verdicts in all their forms."""
+"""Tables of verdicts in all formats."""
 
 import io
 
@@ -42,14 +42,14 @@ PAPER = VerdictTable(
 
 
 def as_text(shown, **further):
-    """What the terminal shows, without colour."""
+    """The table on a terminal without colours."""
     text = io.StringIO()
     print_table(shown, Printer(text, 80, has_colour=False), **further)
     return text.getvalue()
 
 
-def test_tables_are_as_agreed(golden):
-    """With published counts in a second line; those of the page lead to examples."""
+def test_tables_equal_their_reference(golden):
+    """Published counts are in a second line; counts on the page link to examples."""
     golden("table.txt", as_text(OURS, further={"paper": PAPER}))
     golden("table.tex", table_latex(OURS))
     golden("table.csv", tables_csv({"ours": OURS, "paper": PAPER}))
@@ -57,8 +57,8 @@ def test_tables_are_as_agreed(golden):
     golden("table.html", table_html(OURS, further={"paper": PAPER}, link=link) + "\n")
 
 
-def test_intervals_are_as_agreed(golden):
-    """Below each count that of its share, outwards; a table beside it may have none."""
+def test_intervals_equal_their_reference(golden):
+    """Each count has the interval of its share below, rounded outwards."""
     sampled = replace(OURS, shows_intervals=True)
     golden("intervals.txt", as_text(sampled, further={"paper": PAPER}))
     golden("intervals.tex", table_latex(sampled))
@@ -94,7 +94,7 @@ def test_latex_escapes_every_special_character():
 @each("verdict", Verdict)
 @each(("shade", "page"), [("light", "#fbfbfa"), ("dark", "#0f1215")])
 def test_colours_can_be_read(verdict, shade, page):
-    """Each verdict's colour contrasts with its page by at least 4.5 to 1 (WCAG AA)."""
+    """The contrast of each verdict's colour with the page is at least 4.5 to 1 (WCAG AA)."""
     bright, dark = sorted((luminance(getattr(MARKS[verdict], shade)), luminance(page)))[::-1]
     assert (bright + 0.05) / (dark + 0.05) >= 4.5
 

@@ -1,4 +1,4 @@
-"""Verdicts as MCAP, read back by its own library, and the layout that shows them."""
+"""Verdicts as MCAP, read back with the MCAP library, and the Foxglove layout."""
 
 import json
 import math
@@ -51,7 +51,7 @@ def base(tmp_path, monkeypatch):
 
 
 def read_back(path):
-    """By topic the stamps and contents; their order is that of the file."""
+    """Stamps and messages by topic, in the order of the file."""
     from mcap.reader import make_reader
 
     found, kinds, last = defaultdict(list), {}, 0
@@ -126,8 +126,8 @@ def test_the_layout_shows_what_is_there(base):
     assert {topic for topic in kinds if "/events/" not in topic} - shown == {"/rvmon/attempts"}
 
 
-def test_a_scene_is_drawn_where_its_bodies_are():
-    """In the upright plane x, z; what is no body stands still; angles turn x to z."""
+def test_a_scene_has_its_bodies_in_place():
+    """In the vertical plane x, z; static parts do not move; angles turn x towards z."""
     outlines = (
         Outline("arm", ((-1.0, 0.0), (1.0, 0.0)), 0.05, "link"),
         Outline("hand", ((0.0, 0.0),), 0.1, "person"),
@@ -140,7 +140,7 @@ def test_a_scene_is_drawn_where_its_bodies_are():
     assert (t, later) == (0, 10**9)
     arm, table = first["entities"][0]["lines"]
     assert arm["pose"]["position"] == {"x": 2.0, "y": 0.0, "z": 3.0}
-    # About the axis y by -90 degrees: (1, 0, 0) comes to (0, 0, 1).
+    # Rotated by -90 degrees about y, (1, 0, 0) becomes (0, 0, 1).
     y, w = arm["pose"]["orientation"]["y"], arm["pose"]["orientation"]["w"]
     assert (round(1 - 2 * y * y, 9), round(-2 * y * w, 9)) == (0, 1)
     assert (arm["type"], table["type"]) == (0, 1)
