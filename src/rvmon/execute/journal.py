@@ -6,7 +6,7 @@ that writes it, all earlier entries are intact; reading stops at a truncated or 
 >>> from tempfile import TemporaryDirectory
 >>> with TemporaryDirectory() as folder:
 ...     path = Path(folder, "a.journal")
-...     begin(path, [b"first"])
+...     create(path, [b"first"])
 ...     add(path, b"second")
 ...     _ = path.write_bytes(path.read_bytes() + b"0123456")
 ...     entries(path)
