@@ -1,4 +1,4 @@
-"""Recorded runs are accepted exactly if some run of the network explains them."""
+"""A recording conforms exactly if some run of the network explains it."""
 
 from fractions import Fraction
 
@@ -30,7 +30,7 @@ automaton Door {
 
 
 def check(recorded, *, end, observed=("push", "opened", "closed"), tolerance=0.0, text=DOOR):
-    """The answer for actions given as (seconds, label)."""
+    """Conformance of a recording, given as pairs (seconds, label)."""
     actions = [Recorded(round(t * TICKS_PER_SECOND), label) for t, label in recorded]
     return conform(
         loads_network(text),
@@ -58,15 +58,13 @@ def check(recorded, *, end, observed=("push", "opened", "closed"), tolerance=0.0
         ([(1, "push"), (3, "opened")], 17, 2, ""),
     ],
 )
-def test_runs_of_the_model_conform_and_the_first_divergence_of_others_is_told(
-    recorded, end, explained, label
-):
+def test_a_recording_conforms_or_its_first_divergence_is_reported(recorded, end, explained, label):
     answer = check(recorded, end=end)
     assert (answer.conforms, answer.explained) == (label is None, explained)
     assert label is None or answer.divergence.label == label
 
 
-def test_what_was_allowed_is_told():
+def test_a_divergence_lists_what_was_allowed_instead():
     answer = check([(1, "push"), (2, "push")], end=9)
     second = TICKS_PER_SECOND
     assert set(answer.divergence.allowed) == {
@@ -77,22 +75,21 @@ def test_what_was_allowed_is_told():
     assert Allowed("", 9 * second, None) in quiet.divergence.allowed
 
 
-def test_unobserved_actions_happen_unseen():
+def test_an_unobserved_action_may_happen_at_any_time():
     assert check([(3, "opened")], end=3).conforms is False
     assert check([(3, "opened")], end=3, observed=("opened",)).conforms is True
     assert check([(1.9, "opened")], end=3, observed=("opened",)).conforms is False
 
 
-def test_the_tolerance_is_both_ways_and_not_more():
-    """An instant may be off by the tolerance in either direction."""
+def test_an_instant_may_be_off_by_the_tolerance_in_either_direction():
     for off in (-1.05, 1.05):
         at = 3 + off if off < 0 else 4 + off
         assert check([(1, "push"), (at, "opened")], end=6, tolerance=0.52).conforms is False
         assert check([(1, "push"), (at, "opened")], end=6, tolerance=0.53).conforms is True
 
 
-def test_errors_of_tolerance_do_not_add_up():
-    """Each instant may be off, but the model's clocks are those of one run."""
+def test_deviations_within_the_tolerance_do_not_add_up():
+    """Each instant may deviate, but the model's clocks belong to one exact run."""
     text = """
     unit 1 s
     clock x
@@ -127,7 +124,7 @@ def test_every_run_of_a_network_conforms_to_it():
 
 
 def _labelled(text):
-    """A random model in seconds whose edges have labels by their target."""
+    """A random model with unit 1 s and without queries, its edges labelled by their target."""
     lines = []
     for line in text.replace("network random", "network random unit 1 s").splitlines():
         words = line.split()
@@ -135,8 +132,7 @@ def _labelled(text):
     return "\n".join(line for line in lines if not line.startswith("query"))
 
 
-def test_a_model_without_unit_is_refused():
-    """Recordings are in seconds: a model that does not say what its unit is cannot be compared."""
+def test_a_model_without_a_time_unit_is_refused():
     with pytest.raises(ModelError, match="not in whole milliseconds"):
         check([], end=1, text=DOOR.replace("unit 1 s", ""))
 
@@ -148,8 +144,6 @@ clock x
 automaton p { location a location b start a edge a -> b when x >= 1 on c! as snd }
 automaton q { location a location b start a edge a -> b on c? as rcv }
 """
-
-
 BARE = PAIR.replace(" as snd", "").replace(" as rcv", "")
 
 
@@ -166,7 +160,7 @@ BARE = PAIR.replace(" as snd", "").replace(" as rcv", "")
         (PAIR, "rcv rcv", "rcv", False),
     ],
 )
-def test_a_synchronised_move_has_its_channel_and_the_labels_of_all_its_edges(
+def test_a_synchronised_move_is_observed_by_its_edge_labels_or_else_its_channel(
     text, names, observed, explained
 ):
     recorded = [(2, name) for name in names.split()]

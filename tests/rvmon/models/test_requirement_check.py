@@ -1,4 +1,4 @@
-"""Requirements on all runs of a network: claims, witnesses and counterexamples, judged twice."""
+"""Requirements checked on all runs of a network, with witnesses and counterexamples."""
 
 from collections import Counter
 from fractions import Fraction
@@ -49,7 +49,7 @@ def observed(requirements, model=LAMP, **options):
 
 
 def judged(spec, observation, run):
-    """The verdicts of the attempts of a run, by the engine that monitors recordings."""
+    """The set of verdicts that the monitor gives on a run."""
     scale, now = observation.network.unit, Fraction(0)
 
     def values(position):
@@ -86,7 +86,7 @@ def judged(spec, observation, run):
         ("upon start then for 0.5 s not lit", True),
     ],
 )
-def test_claims_on_all_runs(requirement, holds):
+def test_a_claim_is_confirmed_by_monitoring_its_runs(requirement, holds):
     ((one,), spec) = observed(f"requirement R\n  {requirement}")
     assert one.holds is holds
     assert (one.failing is None) is holds
@@ -96,11 +96,17 @@ def test_claims_on_all_runs(requirement, holds):
         assert "P" in judged(spec, one, one.passing)
 
 
-def test_a_requirement_that_no_run_triggers_is_vacuous():
-    ((one,), _) = observed("requirement R\n  upon raised and dark then within 1 s lit")
-    assert one.holds is True
-    assert one.triggered is None
-    assert "vacuous" in one.remark
+@pytest.mark.parametrize(
+    ("requirement", "options", "holds", "remark"),
+    [
+        ("upon raised and dark then within 1 s lit", {}, True, "vacuous"),
+        ("upon pressed then within 8 s dark", {"budget": Budget(states=3)}, None, "not decided"),
+    ],
+)
+def test_a_vacuous_or_undecided_requirement_has_a_remark(requirement, options, holds, remark):
+    ((one,), _) = observed(f"requirement R\n  {requirement}", **options)
+    assert (one.holds, one.triggered) == (holds, None)
+    assert remark in one.remark
 
 
 @pytest.mark.slow
@@ -116,7 +122,7 @@ def test_a_requirement_that_no_run_triggers_is_vacuous():
         ("upon pressed then always eventually dark", True, "in the end"),
     ],
 )
-def test_what_has_no_deadline(requirement, holds, remark):
+def test_requirements_without_a_deadline(requirement, holds, remark):
     ((one,), _) = observed(f"requirement R\n  {requirement}")
     assert one.holds is holds
     assert remark in one.remark if remark else not one.remark
@@ -125,8 +131,7 @@ def test_what_has_no_deadline(requirement, holds, remark):
         assert one.failing.ending in (Ending.IDLE, Ending.LOOP)
 
 
-def test_the_loop_on_which_a_promise_waits():
-    """It is shown with where it begins; a loop on which time stops refutes nothing."""
+def test_a_loop_refutes_a_promise_only_if_time_passes_on_it():
     going = "edge on -> on when x >= 1 and level == 1 do x = 0 as kept"
     model = LAMP.replace("  edge on -> off", f"  {going}\n  edge on -> off")
     ((one,), _) = observed("requirement R\n  upon pressed then eventually dark", model)
@@ -148,7 +153,7 @@ def test_the_loop_on_which_a_promise_waits():
         ("upon pressed then within 10 ns dark", "whole number"),
     ],
 )
-def test_what_cannot_be_expressed_is_said(requirement, reason):
+def test_an_inexpressible_requirement_says_why(requirement, reason):
     spec = rvmon.loads(
         "spec s\ntime held\nsignal lit, hot : bool\nevent pressed, dark, broken\n"
         f"requirement R\n  {requirement}\n"
@@ -159,23 +164,14 @@ def test_what_cannot_be_expressed_is_said(requirement, reason):
     assert reason in one.remark
 
 
-def test_signals_can_be_bound_from_outside():
+def test_signals_can_be_bound_to_expressions():
     spec = rvmon.loads(
-        "spec s\ntime held\nsignal bright : bool\nevent pressed\n"
+        "spec s\ntime held\nsignal bright : bool\n"
         "requirement R\n  upon bright then within 6 s not bright\n"
     )
-    (one,) = observe(loads_network(LAMP), spec.checked, bindings={"bright": "level == 2"})
-    assert one.holds is True
-    (other,) = observe(loads_network(LAMP), spec.checked, bindings={"bright": "Lamp.on"})
-    assert other.holds is False
-
-
-def test_a_budget_is_told():
-    ((one,), _) = observed(
-        "requirement R\n  upon pressed then within 8 s dark", budget=Budget(states=3)
-    )
-    assert one.holds is None
-    assert "not decided" in one.remark
+    for formula, holds in (("level == 2", True), ("Lamp.on", False)):
+        (one,) = observe(loads_network(LAMP), spec.checked, bindings={"bright": formula})
+        assert one.holds is holds, formula
 
 
 PAIR = """
@@ -206,8 +202,8 @@ def test_all_labels_of_a_synchronised_move_are_events(requirement, holds):
         assert "F" in judged(spec, found, found.failing)
 
 
-def thrown(seed):
-    """A random network, the formulas of its signals p, q and r, and what else is to be drawn."""
+def random_labelled(seed):
+    """A random network, the formulas of its signals p, q and r, and the random generator."""
     random = Random(seed)
     signals = random.choices(["P0.l0", "P0.l1", "b", "v > 0", "not P0.l1", "not b"], k=3)
     lines = random_model(seed).replace("network random", "network random\nunit 1 s").split("\n")
@@ -228,11 +224,11 @@ def requiring(text):
 
 @pytest.mark.law
 @pytest.mark.parametrize("first", range(0, 10, 5))
-def test_promises_agree_with_formulas_of_ltl(first):
-    """On random networks, by the Büchi product, which knows no monitor."""
+def test_random_promises_agree_with_ltl_model_checking(first):
+    """The Büchi product decides without a monitor."""
     compared = 0
     for seed in range(first, first + 5):
-        network, (p, q, r), _ = thrown(seed)
+        network, (p, q, r), _ = random_labelled(seed)
         for requirement, formula in (
             ("whenever p then eventually q", f"G (({p}) imply F ({q}))"),
             ("whenever p then (r until q)", f"G (({p}) imply (({r}) U ({q})))"),
@@ -243,7 +239,7 @@ def test_promises_agree_with_formulas_of_ltl(first):
             except ModelError:
                 continue  # it cannot start
             if expected.run and expected.run.ending in (Ending.ZENO_LOOP, Ending.TIME_LOCK):
-                continue  # time stops: no recording is like that
+                continue  # time stops, which no recording shows
             (one,) = observe(network, requiring(requirement).checked)
             assert one.holds == expected.holds, (seed, requirement)
             compared += 1
@@ -265,8 +261,8 @@ BOUNDED = (
 )
 
 
-def walked(network, random):
-    """The instants of a random run, with the signals and the events there; then its end."""
+def random_run(network, random):
+    """The samples `(t, signals and events)` of a random run, then `(end, None)`."""
     read = {one.name: evaluator(one.value) for one in network.signals}
     now, t, names = initial_configuration(network), Fraction(0), set[str]()
     rules = Rules(network)
@@ -286,11 +282,11 @@ def walked(network, random):
 
 @pytest.mark.law
 @pytest.mark.parametrize("first", range(0, 20, 10))
-def test_no_random_run_says_otherwise(first):
-    """What holds fails on none and what is vacuous starts on none, by the core's monitors."""
+def test_no_random_run_refutes_a_claim(first):
+    """A requirement that holds fails on no run, and a vacuous one is never triggered."""
     said = Counter()
     for seed in range(first, first + 10):
-        network, _, random = thrown(seed)
+        network, _, random = random_labelled(seed)
         for requirement in random.sample(BOUNDED, 5):
             text = requirement.format(a=random.randint(1, 3), b=random.randint(3, 6))
             spec = requiring(text)
@@ -301,7 +297,7 @@ def test_no_random_run_says_otherwise(first):
             for _ in range(25):
                 monitor, attempts = spec.monitor(), []
                 try:
-                    for t, sample in walked(network, random):
+                    for t, sample in random_run(network, random):
                         instant = int(t * TICKS_PER_SECOND)
                         if sample is None:
                             attempts += monitor.advance_ns(instant)

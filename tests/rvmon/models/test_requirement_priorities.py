@@ -29,7 +29,7 @@ OTHERS = ["", "chan priority default < low, high", "system A, B",
 
 
 def answer(requirement, ranks, stay=FORCED):
-    """The observation of one requirement; its runs are runs of the network, priorities and all."""
+    """The observation of one requirement, whose runs obey all rules including priorities."""
     network = loads_network(MODEL.format(stay=stay, ranks=ranks))
     text = f"spec s\ntime held\nevent slow, quick\nrequirement R\n  {requirement}\n"
     (one,) = observe(network, rvmon.loads(text).checked)
@@ -41,7 +41,7 @@ def answer(requirement, ranks, stay=FORCED):
 
 @pytest.mark.parametrize("ranks", [*RANKED, *OTHERS])
 def test_a_requirement_may_hold_by_priority_alone(ranks):
-    """No priority makes time wait, and no deadline comes before a step at its instant."""
+    """A priority never delays a step, and a step at the deadline is still in time."""
     one = answer("upon start then for 3 s not slow", ranks)
     assert one.holds is (ranks in RANKED)
     if ranks in OTHERS:

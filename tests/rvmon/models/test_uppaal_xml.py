@@ -1,4 +1,4 @@
-"""Networks as UPPAAL's XML mean the same when they are read back; drawings show everything."""
+"""A network written as UPPAAL XML and read back is the same; drawings are complete."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ MODELS = Path(__file__).parents[3] / "examples" / "models"
 
 
 @pytest.mark.law
-def test_random_networks_come_back():
+def test_random_networks_survive_the_round_trip():
     for seed in range(40):
         network = loads_network(random_model(2 * seed))
         again = loads_network(uppaal_xml(network))
@@ -31,7 +31,7 @@ def test_random_networks_come_back():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("model", ["fischer.ta", "train_gate.xml", "bridge.xml", "csma_cd.xml"])
-def test_templates_and_arrays_come_back_flat(model):
+def test_flattened_templates_and_arrays_have_the_same_answers(model):
     constants = {} if model == "bridge.xml" else {"N": 2}
     network = load_network(MODELS / model, constants=constants)
     again = loads_network(uppaal_xml(network))
@@ -45,7 +45,7 @@ def test_templates_and_arrays_come_back_flat(model):
 
 @pytest.mark.slow
 def test_the_handover_network_keeps_unit_weights_and_labels():
-    """What UPPAAL has no place for survives in comments, queries beyond it as their text."""
+    """Comments keep what UPPAAL cannot express, such as the text of its unsupported queries."""
     network = handover_network()
     xml = uppaal_xml(network)
     again = loads_network(xml)
@@ -58,7 +58,7 @@ def test_the_handover_network_keeps_unit_weights_and_labels():
     assert "R1" in {query.id for query in again.queries}
 
 
-def test_names_become_identifiers():
+def test_names_become_unique_identifiers():
     network = loads_network("""
     clock process
     int[0,1] T_1_v

@@ -1,4 +1,4 @@
-"""Networks built from Python are those that their text would give."""
+"""A network built from Python equals the one read from the same text."""
 
 import pytest
 from tests.tools.findings import codes_of, findings_of
@@ -21,7 +21,7 @@ def lamp():
 
 
 @pytest.mark.slow
-def test_it_equals_its_text():
+def test_a_built_network_equals_its_text():
     text = """
     network lamp "A lamp"
     unit 1 s
@@ -42,8 +42,8 @@ def test_it_equals_its_text():
     }
     query q "it can": E<> Light.on and count == 2
     """
-    assert lamp().build() == loads_network(text)
     network = lamp().build()
+    assert network == loads_network(text)
     assert verify(network, network.queries[0]).holds
 
 
@@ -57,14 +57,14 @@ def test_it_equals_its_text():
         (lambda net: net.query("E<>"), "query: E<>"),
     ],
 )
-def test_a_text_that_cannot_be_read_is_shown(change, line):
+def test_a_syntax_error_shows_the_generated_line(change, line):
     net = NetworkBuilder("n")
     change(net)
     assert line in net.text
     assert findings_of(net.build)[0].spans[0].span.source.text == net.text
 
 
-def test_wrong_names_are_told_together():
+def test_all_unknown_names_are_reported_together():
     net = NetworkBuilder("n")
     net.automaton("A").location("a", invariant="x <= 3").edge("a", "b", sync="c!")
     assert codes_of(net.build) == ["TA002", "TA002"]

@@ -1,4 +1,4 @@
-"""Differences of clocks in guards, invariants and queries say what they say, and no run is lost."""
+"""Guards, invariants and queries may compare the difference of two clocks."""
 
 import re
 from fractions import Fraction
@@ -50,8 +50,8 @@ query: {}
         ("E<> x + 2 <= 5 and A.c", True),
     ],
 )
-def test_answers_are_those_of_the_difference(query, expected):
-    """Whether the model has the query or is asked it later, which changes nothing of it."""
+def test_queries_about_differences(query, expected):
+    """The query may be part of the model or be asked later, which leaves the model unchanged."""
     network, plain = (loads_network(MODEL.format(text)) for text in (query, "E<> A.c"))
     assert verify(network, network.queries[0]).holds is expected
     assert verify(plain, query).holds is expected
@@ -62,7 +62,7 @@ _COMPARE = re.compile(r"(when|and) ([xyz]) ([<>=]+) (\d)")
 
 
 def with_differences(seed):
-    """A random model some of whose guards compare the difference of two clocks."""
+    """A random model in which some guards compare the difference of two clocks."""
     random = Random(seed)
 
     def changed(found):
@@ -75,7 +75,7 @@ def with_differences(seed):
 
 
 @pytest.mark.law
-def test_what_edges_keep_up_is_the_truth():
+def test_the_variable_kept_for_a_difference_has_its_truth_in_every_region():
     seen = 0
     for seed in range(40):
         text = with_differences(seed)
@@ -129,12 +129,12 @@ automaton B {{ location b start b edge b -> b on c? do {} }}
          "a clock's state is written"),
     ],
 )  # fmt: skip
-def test_what_no_edge_can_keep_up_is_refused(text, message):
+def test_a_difference_that_cannot_be_tracked_is_refused(text, message):
     with pytest.raises(ModelError, match=message):
         loads_network(text)
 
 
-def test_clocks_under_or_make_edges_of_which_one_fits():
+def test_a_disjunction_of_clocks_splits_an_edge_into_disjoint_ones():
     text = """
     clock x, y
     int[0,3] v
@@ -168,7 +168,7 @@ def test_edges_that_set_the_same_clock_may_synchronise():
     assert verify(network, network.queries[0]).holds
 
 
-def test_figures_are_refused_where_edges_are_split():
+def test_signals_and_probabilities_are_refused_where_edges_are_split():
     network = loads_network(MODEL.format("E<> A.c"))
     with pytest.raises(ModelError, match="keep track of their difference"):
         signal_on(network, "far", "x - y > 3")

@@ -1,4 +1,4 @@
-"""Models that are too large, or that speak of themselves, are findings at once."""
+"""Models that are too large or refer to themselves are findings."""
 
 import pytest
 from tests.tools.findings import findings_of
@@ -7,8 +7,6 @@ from rvmon.models.language import resolve
 from rvmon.models.language.load import load_network, loads_network
 
 A = "automaton A { location a start a } "
-
-
 EDGE = "clock x automaton T {{ location a start a edge a -> a when {} }}"
 
 
@@ -63,35 +61,36 @@ EDGE = "clock x automaton T {{ location a start a edge a -> a when {} }}"
         (A + "query: E<>[<=2147483647] A.a", "TA007", "a bound of 2147483647"),
         (A + "query: A.a -->[<=-1] A.a", "TA007", "a bound of -1"),
         (EDGE.format("x[" * 600 + "0" + "]" * 600 + " == 0"), "TA019", "nested too deeply"),
+        (EDGE.format("not " * 5000 + "true"), "TA019", "nested too deeply"),
+        (EDGE.format(" + ".join(["1"] * 5000) + " > 1"), "TA019", "nested too deeply"),
+        (EDGE.format("f(" * 5000 + "1" + ")" * 5000), "TA019", "nested too deeply"),
     ],
 )  # fmt: skip
-def test_each_is_one_finding(text, code, message, monkeypatch):
-    """The code, and what is too much of what."""
+def test_an_exceeded_limit_is_one_finding(text, code, message, monkeypatch):
     monkeypatch.setattr(resolve, "MAX_UNROLLED", 5_000)
     (diagnostic,) = findings_of(loads_network, text)
     assert diagnostic.code == code
     assert message in diagnostic.message
 
 
-def test_findings_end_at_a_hundred():
+def test_at_most_a_hundred_findings_are_given():
     names = ", ".join(f"x{i}, x{i}" for i in range(200))
     assert len(findings_of(loads_network, f"clock {names}")) == 100
 
 
-def test_the_same_mistake_at_many_places_is_told_once():
+def test_the_same_error_at_many_places_is_one_finding():
     (found,) = findings_of(loads_network, "clock x, x, x, x, x, x " + A)
     assert found.message == "two things named `x` (5 places)"
     assert [label.span.start for label in found.spans] == [9, 6, 12, 15]
 
 
-def test_a_byte_order_mark_is_passed_over(tmp_path):
-    """Editors on Windows write one in front."""
+def test_a_byte_order_mark_is_ignored(tmp_path):
     path = tmp_path / "model.ta"
     path.write_bytes(b"\xef\xbb\xbf" + A.encode())
     assert len(load_network(path).automata) == 1
 
 
-def test_a_wide_range_is_warned_of():
+def test_a_wide_range_is_a_warning():
     text = "int[0, 1000000000] n\nint[0, 10] m\nautomaton a { location l start l }"
     (warning,) = loads_network(text).warnings
     assert (warning.code, warning.severity) == ("TA005", "warning")

@@ -1,4 +1,4 @@
-"""Lower bounds in invariants: what they keep out, and where they cannot be moved."""
+"""A lower bound in an invariant acts as a guard on the edges into its location."""
 
 import pytest
 from tests.tools.each import each
@@ -51,7 +51,7 @@ def test_a_lower_bound_holds_on_entry(invariant, update, query, holds):
         ),
     ],
 )
-def test_what_cannot_be_moved_is_refused(parts, message):
+def test_a_lower_bound_that_cannot_become_a_guard_is_refused(parts, message):
     with pytest.raises(ModelError, match=message) as caught:
         loads_network(model(**parts))
     assert caught.value.diagnostics[0].code == "TA009"

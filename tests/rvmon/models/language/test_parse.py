@@ -1,4 +1,4 @@
-"""All mistakes of a text that cannot be read are told, each with its place."""
+"""All syntax errors of a text are reported, each with its place."""
 
 from tests.tools.each import each
 from tests.tools.findings import findings_of
@@ -54,19 +54,19 @@ def lines_of(text):
     return [line for line, _ in places_of(text)]
 
 
-def test_every_part_of_a_text_tells_its_mistake():
+def test_every_part_of_a_text_reports_its_error():
     found = " ".join(f"{line}:{column}" for line, column in places_of(TEXT))
     assert found == "3:9 5:19 9:9 13:31 14:27 15:15 18:1 20:1"
 
 
-def test_every_part_of_declarations_tells_its_mistake():
+def test_every_part_of_xml_declarations_reports_its_error():
     assert lines_of(XML) == [2, 4, 9, 10, 12, 12, 13, 14, 15, 16]
 
 
-def test_so_many_mistakes_are_not_all_told():
+def test_the_number_of_reported_errors_is_limited():
     assert len(lines_of("int[0,5 n\n" * 100)) == MOST
 
 
 @each("text", ["}", "{", "automaton", "automaton A {", "query", "(" * 50, "x;"])
-def test_what_has_no_parts_tells_one_mistake(text):
+def test_a_short_fragment_is_one_error(text):
     assert lines_of(text) == [1]

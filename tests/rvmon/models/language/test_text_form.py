@@ -1,4 +1,4 @@
-"""What the `.ta` form accepts, and what it says about what it does not."""
+"""The `.ta` text form: what it accepts and which findings it gives."""
 
 import logging
 import random
@@ -36,7 +36,7 @@ def test_the_grammar_has_no_conflicts(caplog):
     assert not [record for record in caplog.records if "conflict" in record.getMessage().lower()]
 
 
-def test_all_parts_of_a_model_are_read():
+def test_a_model_with_every_kind_of_part():
     network = loads_network("""
     network demo "A demo"   // a comment
     unit 50 ms              /* another */
@@ -73,7 +73,7 @@ def test_all_parts_of_a_model_are_read():
 
 
 def test_templates_are_instantiated_for_all_values_of_their_free_parameters():
-    """An instance with parameters of its own binds some arguments and leaves the others."""
+    """`Half` binds one parameter of `T` and leaves the other free."""
     network = loads_network("""
     automaton U(const int[1,2] i, const bool b) { location a start a }
     automaton T(const int[0,9] i, const int[0,9] j) {
@@ -87,7 +87,7 @@ def test_templates_are_instantiated_for_all_values_of_their_free_parameters():
     assert [v.initial for v in network.variables] == [17, 27]
 
 
-def test_reference_parameters_stand_for_the_thing():
+def test_reference_parameters_are_aliases():
     network = loads_network("""
     clock x
     int[0,3] v, w[2]
@@ -103,7 +103,7 @@ def test_reference_parameters_stand_for_the_thing():
     assert not verify(network, "E<> one.b and x < 2").holds
 
 
-def test_types_of_parameters_may_speak_of_earlier_ones():
+def test_a_parameter_type_may_refer_to_earlier_parameters():
     text = """
     int[0,3] v[3]
     automaton T(const int n, const int[0,n] k, int[0,3] &w[n]) {
@@ -167,9 +167,9 @@ A = "automaton A { location a start a } "
         ("int[0,1] v[1000000] " + A, "TA019"),
         (A + "query: A<> (E<> A.a)  query: true -->[<=3] (A.a --> A.a)", "TA001"),
         ("", "TA021"),
-        # Nothing begins, which is refused like any other.
+        # Text that starts no declaration.
         *((text, "TA001") for text in ("t,b", '"', "x", "=1")),
-        # A mistake is not blamed on a word that only UPPAAL knows.
+        # The error is the `= 3`, not the name that is a keyword in UPPAAL only.
         *(
             (
                 f"automaton A {{ location {word} start {word} edge {word} -> {word} do = 3 }}",
@@ -197,17 +197,17 @@ automaton A {
     ("text", "found"),
     [
         (MISTAKEN, "3:1:10 5:2:1 2:4:24 2:5:9 2:6:13 2:7:18"),
-        # Those of a template are told once.
+        # An error of a template is reported once, not per instance.
         ("automaton T(const int[1,10] i) { location a start b }", "2:1:51"),
     ],
 )
-def test_all_that_is_wrong_appears_at_once_in_order_of_place(text, found):
+def test_all_findings_come_at_once_in_order_of_place(text, found):
     places = [tuple(map(int, one.split(":"))) for one in found.split()]
     assert findings(text) == [(f"TA{code:03}", line, column) for code, line, column in places]
 
 
 @pytest.mark.slow
-def test_what_is_damaged_is_told_and_nothing_else():
+def test_exactly_the_damaged_lines_are_reported():
     for seed in range(15):
         rng = random.Random(seed)
         lines = ["clock x", "automaton A {", "  location a", "  start a"]
@@ -237,17 +237,7 @@ def test_a_channel_used_by_nobody_is_a_warning():
     ]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "text",
-    ["not " * 5000 + "true", " + ".join(["1"] * 5000) + " > 1", "f(" * 5000 + "1" + ")" * 5000],
-)
-def test_deep_nesting_is_refused_politely(text):
-    guard = f"automaton A {{ location a start a edge a -> a when {text} }}"
-    assert findings(guard) == [("TA019", 0, 0)]
-
-
-def test_a_value_outside_its_range_is_told_when_a_run_gets_there():
+def test_a_value_outside_its_range_is_an_error_only_if_a_run_reaches_it():
     text = """clock x int[0,2] v automaton A { location a invariant x <= 1 start a
     edge a -> a when x >= 1 do v = v + 1, x = 0 }"""
     (diagnostic,) = findings_of(verify, loads_network(text), "A[] v <= 2")
@@ -257,7 +247,7 @@ def test_a_value_outside_its_range_is_told_when_a_run_gets_there():
     assert verify(loads_network(text.replace("x <= 1", "x < 1")), "A[] v <= 2").holds
 
 
-def test_files_that_cannot_be_read_are_findings(tmp_path):
+def test_unreadable_files_are_findings(tmp_path):
     with pytest.raises(ModelError, match="No such file"):
         load_network(tmp_path / "missing.ta")
     (tmp_path / "binary.ta").write_bytes(b"\xff\xfe\x00")
@@ -289,7 +279,7 @@ def test_a_division_by_zero_has_its_place(guard):
     ],
 )
 def test_operators_bind_as_those_of_uppaal(text, bound):
-    """Words as signs: UTAP's grammar has `imply` beside `or`, from the left, and `and` above."""
+    """In UTAP's grammar `imply` and `or` share one left-associative level, below `and`."""
     network = loads_network("bool p, q, r, s int[0,3] v automaton A { location l start l }")
     assert (
         query_on(network, f"E<> ({text})")[1].formula
@@ -306,7 +296,7 @@ def test_operators_bind_as_those_of_uppaal(text, bound):
         ("automaton my-name { location l start l }", "first a letter: `my_name`"),
         ("automaton a { location l-1 start l }", "first a letter: `l_1`"),
         ("automaton a { location 1st start l }", "first a letter: `st`"),
-        # Priorities that have no meaning.
+        # Meaningless priorities.
         ("chan a chan priority a < a " + A, "a second priority"),
         ("chan a, b chan priority a < b " + A, "without `default`"),
         ("chan a chan priority a < default chan priority default " + A, "a second list"),
@@ -315,7 +305,6 @@ def test_operators_bind_as_those_of_uppaal(text, bound):
         ("chan priority a < default " + A, "no name `a`"),
     ],
 )
-def test_what_is_said_of_a_mistake(text, said):
-    """What was probably meant, and how to write it."""
+def test_a_finding_suggests_what_was_meant(text, said):
     (diagnostic,) = findings_of(loads_network, text)
     assert said in f"{diagnostic.name}: {diagnostic.message} ({diagnostic.help})"

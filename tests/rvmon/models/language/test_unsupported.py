@@ -1,4 +1,6 @@
-"""What UPPAAL has and this checker has not is refused by name, with its place and a way out."""
+"""Unsupported features of UPPAAL are refused by name, with their place and an alternative."""
+
+from xml.sax.saxutils import escape
 
 import pytest
 from tests.tools.each import each
@@ -35,7 +37,7 @@ def model(declaration="", local="", invariant="", system="system T;", queries=""
         ({"guard": "random(2) &gt; 1"}, "`random`"),
     ],
 )  # fmt: skip
-def test_what_is_not_supported_is_called_by_its_name(parts, message):
+def test_an_unsupported_feature_is_named(parts, message):
     (diagnostic,) = findings_of(loads_network, model(**parts))
     assert diagnostic.code == "TA016"
     assert message in f"{diagnostic.message}: {diagnostic.help}"
@@ -53,20 +55,21 @@ def test_what_is_not_supported_is_called_by_its_name(parts, message):
         ("A<> T.A U T.A", "takes brackets"),
     ],
 )
-def test_foreign_queries_are_called_by_their_name(formula, message):
-    """As a query of its own it is refused; in a file it is left out with a warning."""
+def test_an_unsupported_query_is_an_error_by_itself_and_a_warning_in_a_file(formula, message):
     with pytest.raises(ModelError, match=message):
-        query_on(loads_network(model()), formula)[1]
-    text = formula.replace("<", "&lt;").replace(">", "&gt;")
-    queries = f"<query><formula>{text}</formula></query>"
+        query_on(loads_network(model()), formula)
+    queries = "".join(
+        f"<query><formula>{escape(text)}</formula><comment/></query>"
+        for text in (formula, "E<> T.A", "")
+    )
     network = loads_network(model(queries=queries))
     (warning,) = network.warnings
+    assert (warning.code, warning.severity) == ("TA020", "warning")
     assert message in warning.message
-    assert network.queries == ()
+    assert [query.text for query in network.queries] == ["E<> T.A"]
 
 
-def test_steps_may_stand_before_the_variable():
-    """`++i` is `i++`."""
+def test_an_increment_may_be_a_prefix_or_a_suffix():
     network, same = (
         loads_network(model(declaration="int i;", assignment=text)) for text in ("++i", "i++")
     )
@@ -108,13 +111,11 @@ def test_constants_are_computed_and_copied():
         ("typedef struct { int a; } p; p v[2]; const int N = v[1];", "TA004"),
     ],
 )
-def test_what_is_no_constant_is_refused(declared, code):
-    """A constant depends on no variable, and an initial value has the parts of its type."""
+def test_a_constant_without_a_constant_value_of_its_type_is_refused(declared, code):
     assert findings_of(loads_network, model(declared))[0].code == code
 
 
-def test_the_price_of_a_run_changes_no_run():
-    """Cost and reward of priced automata are passed over, unless the model declares them."""
+def test_cost_and_reward_of_priced_automata_are_ignored_unless_declared():
     text = """<nta><declaration>clock x; {}</declaration><template><name>A</name>
     <location id="a"><label kind="invariant">cost' == 2 and x &lt;= 5 and reward' == 1</label>
     </location><init ref="a"/><transition><source ref="a"/><target ref="a"/>
@@ -129,7 +130,7 @@ def test_the_price_of_a_run_changes_no_run():
         loads_network(text.format("int cost, reward;", "x >= 5"))
 
 
-def test_what_uppaal_declares_is_known():
+def test_the_integer_types_of_uppaal_are_known_in_xml_only():
     declared = "int8_t a = INT8_MIN; uint16_t b = UINT16_MAX; int32_t c; int d = -5;"
     network = loads_network(model(declared))
     ranges = [(v.low, v.high, v.initial) for v in network.variables]
@@ -149,7 +150,7 @@ def test_a_function_sees_what_is_declared_before_it():
     assert verify(network, "A[] not deadlock").holds
 
 
-def test_an_index_outside_its_array_is_told_when_a_run_gets_there():
+def test_an_index_out_of_range_is_an_error_only_where_it_is_evaluated():
     declared = "int a[2]; const int b[2] = {1, 2}; const int N = -1;"
     network = loads_network(model(declared, guard="N &gt;= 0 and b[N] == a[N]"))
     assert verify(network, "E<> deadlock").holds

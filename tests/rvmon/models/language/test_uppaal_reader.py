@@ -1,4 +1,4 @@
-"""UPPAAL's XML: textbook models load unchanged, what is not supported is refused with its place."""
+"""UPPAAL's XML: textbook models load unchanged, and errors have their place."""
 
 from pathlib import Path
 from xml.sax.saxutils import escape
@@ -43,6 +43,25 @@ ENTITIES = (
 )
 
 
+def branching(*weights):
+    """A model whose edge leads to a branch point with one location per weight."""
+    places = "".join(
+        f'<location id="p{i}"><name>p{i}</name></location>' for i in range(len(weights))
+    )
+    branches = "".join(
+        f'<transition><source ref="b"/><target ref="p{i}"/>'
+        f'<label kind="probability">{weight}</label><label kind="assignment">v = v + {i}</label>'
+        "</transition>"
+        for i, weight in enumerate(weights)
+    )
+    return wrap(
+        f'<location id="a"><name>a</name></location>{places}<branchpoint id="b"/><init ref="a"/>'
+        '<transition><source ref="a"/><target ref="b"/><label kind="guard">x &gt;= 2</label>'
+        f'<label kind="assignment">v = 3</label></transition>{branches}',
+        declaration="clock x; int[0,9] v; const int N = 4;",
+    )
+
+
 def finding(text):
     (diagnostic,) = findings_of(loads_network, text)
     return diagnostic.code, diagnostic.spans[0].span.text if diagnostic.spans else None
@@ -67,7 +86,7 @@ def test_textbook_models_load_and_have_the_known_answers(model, constants):
         assert verify(network, query).holds, query.text
 
 
-def test_names_ids_and_comments():
+def test_a_location_without_a_name_goes_by_its_id():
     body = '<location id="id7"/><init ref="id7"/>'
     query = (
         "<query><formula>A[] T.id7 &amp;&amp; x &gt;= 0</formula><comment>so  so</comment></query>"
@@ -78,20 +97,16 @@ def test_names_ids_and_comments():
     assert network.queries[0].remark == "so so"
 
 
-def test_not_binds_as_tight_as_its_sign():
-    """`not x == 1` is `(not x) == 1`, and `not a && b` is `(not a) && b`, as in UPPAAL."""
+def test_not_binds_as_tightly_as_the_exclamation_mark():
+    """As in UPPAAL, `not x == 1` is `(not x) == 1`, and `not a && b` is `(not a) && b`."""
     texts = ("A[] not n == 1", "E<> not n == 1", "A[] not n && n == 2", "A[] (not n) == 0")
     queries = "".join(f"<query><formula>{escape(text)}</formula></query>" for text in texts)
     network = loads_network(wrap(ONE, declaration="int n = 2;", queries=queries))
-    assert [verify(network, query).holds for query in network.queries] == [
-        False,
-        False,
-        False,
-        True,
-    ]
+    answers = [verify(network, query).holds for query in network.queries]
+    assert answers == [False, False, False, True]
 
 
-def test_old_and_new_ways_to_write_instances():
+def test_instances_may_be_written_the_old_or_the_new_way():
     text = wrap(ONE, parameter="const int[0,3] n", system="A := T(1); B = T(2); system A, B, C;")
     text = text.replace("<system>", "<instantiation>C = T(3);</instantiation><system>")
     assert [a.name for a in loads_network(text).automata] == ["A", "B", "C"]
@@ -108,7 +123,7 @@ def test_arrays_may_be_indexed_by_a_type():
     assert not verify(network, "E<> a[3] == 9").holds
 
 
-def test_what_changes_no_run_is_passed_over():
+def test_elements_without_an_effect_on_runs_are_ignored():
     body = ONE.replace("</location>", '<label kind="exponentialrate">1</label></location>') + edge(
         testcode="x"
     ).replace("</transition>", '<nail x="1" y="2"/></transition>')
@@ -137,15 +152,17 @@ def test_what_changes_no_run_is_passed_over():
         (wrap(ONE + edge(comments="weight 2")), ("TA017", "<label")),
         (wrap(ONE, system="system T, U;"), ("TA002", "U")),
         (wrap(ONE, parameter="const int n"), ("TA019", "const int")),
-        # Entities, which may be as large as they like, or from elsewhere.
+        # Entities may expand without limit or read other files.
         *((f"{one}<nta><declaration>&a;</declaration></nta>", ("TA018", "")) for one in ENTITIES),
+        (branching(0, 0), ("TA017", "<transition")),
+        (branching(2, -1), ("TA017", "<transition")),
     ],
 )  # fmt: skip
-def test_what_is_wrong_is_told_with_its_place(text, expected):
+def test_each_error_has_its_code_and_place(text, expected):
     assert finding(text) == expected
 
 
-def test_places_are_right_behind_entities_and_newlines():
+def test_columns_are_right_after_entities_and_newlines():
     guard = "\n   x &lt;= 3 &amp;&amp;\r\n  ü == 1"
     text = wrap(ONE + edge(guard=guard.replace("ü", "nobody")), declaration="clock x; // äöü")
     span = findings_of(loads_network, text)[0].spans[0].span
@@ -169,17 +186,6 @@ def test_the_first_line_of_a_comment_may_be_an_id(comment, told):
     assert (query.id, query.remark) == told
 
 
-def test_a_query_that_cannot_be_read_is_a_warning():
-    queries = "".join(
-        f"<query><formula>{formula}</formula><comment/></query>"
-        for formula in ("control: T.a", "E&lt;&gt; T.a", "")
-    )
-    network = loads_network(wrap(ONE, queries=queries))
-    assert [query.text for query in network.queries] == ["E<> T.a"]
-    (warning,) = network.warnings
-    assert (warning.code, warning.severity) == ("TA020", "warning")
-
-
 def test_deep_and_huge_files_are_refused():
     with pytest.raises(ModelError, match="nested too deeply"):
         loads_network("<nta>" + "<a>" * 1000 + "</a>" * 1000 + "</nta>")
@@ -188,37 +194,13 @@ def test_deep_and_huge_files_are_refused():
             loads_network(f"<nta>{'</nta>':>{room - 5}}")
 
 
-def branching(*weights):
-    """A model in which an edge leads to a branch point, and from there to one location each."""
-    places = "".join(
-        f'<location id="p{i}"><name>p{i}</name></location>' for i in range(len(weights))
-    )
-    branches = "".join(
-        f'<transition><source ref="b"/><target ref="p{i}"/>'
-        f'<label kind="probability">{weight}</label><label kind="assignment">v = v + {i}</label>'
-        "</transition>"
-        for i, weight in enumerate(weights)
-    )
-    return wrap(
-        f'<location id="a"><name>a</name></location>{places}<branchpoint id="b"/><init ref="a"/>'
-        '<transition><source ref="a"/><target ref="b"/><label kind="guard">x &gt;= 2</label>'
-        f'<label kind="assignment">v = 3</label></transition>{branches}',
-        declaration="clock x; int[0,9] v; const int N = 4;",
-    )
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("weights", [("N - 3", 3, 0), (0.25, 0.75, 0.0)])
-def test_a_branch_point_is_a_choice_with_weights(weights):
-    """Also in fractions: nothing but odds depends on them, and such a model is searched as any."""
+def test_a_branch_point_is_a_weighted_choice(weights):
+    """Weights with a fraction affect probabilities only, so the model can still be searched."""
     network = loads_network(branching(*weights))
     assert [edge.weight for edge in network.automata[0].edges] == [0.25, 0.75]
     assert verify(network, "E<> T.p1 and v == 4 and x == 2").holds
     assert not verify(network, "E<> (T.p0 and v != 3) or T.p2 or (not T.a and x < 2)").holds
     share = sample(network, query_on(network, "Pr[<=100; 2000](<> T.p1)")[1]).value
     assert 0.7 < share < 0.8
-
-
-@pytest.mark.parametrize("weights", [(0, 0), (2, -1)])
-def test_weights_that_share_nothing_are_refused(weights):
-    assert finding(branching(*weights))[0] == "TA017"

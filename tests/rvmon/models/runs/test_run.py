@@ -1,4 +1,4 @@
-"""What is worked out instant by instant is what all constraints together imply."""
+"""Timing computed instant by instant equals the closure of all constraints."""
 
 from math import inf
 from random import Random
@@ -12,7 +12,7 @@ from rvmon.models.search.verify import verify
 
 
 def random_timing(random):
-    """Up to eight instants and two before them, with constraints that speak of no later one."""
+    """Up to eight instants and two earlier ones, each constrained only by what precedes it."""
     count, others = random.randint(1, 8), random.randint(0, 2)
     early = [0, *range(count + 1, count + 1 + others)]
 
@@ -35,8 +35,7 @@ def random_timing(random):
 
 
 @pytest.mark.law
-def test_both_ways_say_the_same():
-    """Possible or not, each wait, each earliest instant, and the relation of the ends."""
+def test_incremental_timing_agrees_with_the_closure_of_all_constraints():
     random, possible = Random(3), 0
     for _ in range(600):
         timing, bounds, count, early = random_timing(random)
@@ -54,7 +53,7 @@ def test_both_ways_say_the_same():
 
 
 @pytest.mark.slow
-def test_runs_of_a_thousand_steps_have_their_windows():
+def test_a_run_of_a_thousand_steps_has_its_windows():
     network = loads_network("""
     clock x, y
     int[0,1200] n

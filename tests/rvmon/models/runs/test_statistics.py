@@ -1,7 +1,7 @@
-"""Probabilities and expected values: figures whose errors are what they are said to be."""
+"""Probabilities and expected values are estimated with the stated errors."""
 
 import json
-from math import comb
+from math import comb, exp
 
 import pytest
 from tests.tools.each import each
@@ -30,6 +30,31 @@ automaton A {
 """
 
 
+WINDOW = """
+clock x
+automaton A { location a invariant x <= 10 location b start a edge a -> b when x >= 2 }
+"""
+STOPPED = """
+clock x, used, cost
+bool left
+automaton A {
+  location a invariant x <= 10 and used' == 0
+  location b invariant x <= 10 and used' == 2 and cost' == 3
+  location c rate 1:4
+  location d
+  start a
+  edge a -> b when x == 4
+  edge b -> c when x >= 10
+  edge c -> d do left = true
+}
+"""
+
+
+def short(value):
+    """No id for the text of a model, whose query says enough."""
+    return "" if "automaton" in str(value) else None
+
+
 def figure(text, query, seed=1):
     network = loads_network(text)
     return sample(network, query_on(network, query)[1], seed=seed)
@@ -40,40 +65,61 @@ def sampled(query, seed=1):
 
 
 @pytest.mark.slow
-def test_estimates_have_bounds():
-    """The true probability is 0.3, or 0.7 of staying away; a run lasts as long as is said."""
-    one = sampled("Pr[<=2; 2000](<> A.heads)")
-    assert one.runs == 2_000
-    assert one.low < 0.3 < one.high < one.low + 0.05
-    assert sampled("Pr[<=2](<> A.heads)").runs == 1_000
-    away = sampled("Pr[<=2; 2000]([] not A.heads)")
-    assert away.low < 0.7 < away.high
-    assert sampled("Pr[<=0](<> A.heads)").value == 0
-    assert sampled("Pr[<=2](<> A.heads)") == sampled("Pr[<=2](<> A.heads)")
-    assert sampled("Pr[<=2](<> A.heads)") != sampled("Pr[<=2](<> A.heads)", seed=8)
+@pytest.mark.parametrize(
+    ("model", "query", "truth", "width"),
+    [
+        (COIN, "Pr[<=2; 2000](<> A.heads)", 0.3, 0.05),
+        (COIN, "Pr[<=2; 2000]([] not A.heads)", 0.7, 0.05),
+        (COIN, "E[<=2; 2000](max: n)", 0.3 * 3 + 0.7 * 1, 0.1),
+        (COIN, "E[<=2; 2000](max: 10 * n)", 16, 1),
+        # Delays are uniform in their window.
+        (WINDOW, "Pr[<=6; 2000](<> A.b)", 0.5, 0.05),
+        # A wait without a bound is exponential; the rate of the location is 1:4.
+        (STOPPED, "Pr[<=14; 4000](<> left)", 1 - exp(-1), 0.05),
+    ],
+    ids=short,
+)
+def test_the_true_value_lies_within_the_bounds(model, query, truth, width):
+    one = figure(model, query)
+    assert one.runs == int(query.partition("; ")[2].partition("]")[0])
+    assert one.low < truth < one.high < one.low + width
 
 
 @pytest.mark.slow
-def test_delays_are_uniform_in_their_window():
-    """A bound in the middle of a window is met by half of the runs."""
-    text = """
-    clock x
-    automaton A { location a invariant x <= 10 location b start a edge a -> b when x >= 2 }
-    """
-    result = figure(text, "Pr[<=6; 2000](<> A.b)")
-    assert result.low < 0.5 < result.high
-    assert figure(text, "Pr[<=10](<> A.b)").value == 1
-    assert figure(text, "Pr[<=1](<> A.b)").value == 0
+@pytest.mark.parametrize(
+    ("model", "query", "value"),
+    [
+        (COIN, "Pr[<=0](<> A.heads)", 0),
+        (COIN, "E[<=2; 100](min: n)", 0),
+        (WINDOW, "Pr[<=10](<> A.b)", 1),
+        (WINDOW, "Pr[<=1](<> A.b)", 0),
+        # The clock `used` stands still for 4 units, then runs at a rate of 2 for 6 units.
+        (STOPPED, "Pr[<=10](<> A.c and used >= 12)", 1),
+        (STOPPED, "Pr[<=10](<> A.c and used > 12)", 0),
+        (STOPPED, "Pr[<=7](<> used > 6)", 0),
+        (STOPPED, "Pr[<=8](<> used > 6)", 1),
+        (STOPPED, "Pr[<=4](<> used > 0)", 0),
+    ],
+    ids=short,
+)
+def test_a_certain_value_is_exact(model, query, value):
+    assert figure(model, query).value == value
 
 
-def test_clocks_in_the_formula_are_met_while_time_passes():
-    """A formula that holds only in the middle of a wait is met."""
+def test_the_seed_decides_the_runs():
+    one = sampled("Pr[<=2](<> A.heads)")
+    assert one.runs == 1_000
+    assert sampled("Pr[<=2](<> A.heads)") == one
+    assert sampled("Pr[<=2](<> A.heads)", seed=8) != one
+
+
+def test_a_formula_that_holds_only_during_a_wait_is_met():
     text = "clock x automaton A { location a invariant x <= 9 start a edge a -> a do x = 0 }"
     assert figure(text, "Pr[<=50](<> x == 3 and A.a)").value > 0.5
 
 
 @pytest.mark.parametrize(("successes", "runs"), [(0, 20), (1, 20), (10, 20), (20, 20)])
-def test_bounds_are_clopper_and_pearsons(successes, runs):
+def test_bounds_are_those_of_clopper_and_pearson(successes, runs):
     """At each bound the observed count is just as improbable as the confidence allows."""
     low, high = interval(successes, runs, 0.9)
     at_least = sum(
@@ -102,15 +148,15 @@ def test_a_run_in_which_no_time_passes_is_refused(monkeypatch):
         ("Pr[<=1](<> A.heads or A.tails) >= 0.99", True),
     ],
 )
-def test_tests_take_as_many_runs_as_they_need(query, expected):
+def test_a_test_takes_as_many_runs_as_it_needs(query, expected):
     one = sampled(query)
     assert one.holds is expected
     assert 5 < one.runs < 5_000
 
 
 @pytest.mark.slow
-def test_tests_are_wrong_as_seldom_as_they_say():
-    """At the edge of what they need not tell, 5 % of the tests may be wrong."""
+def test_a_test_errs_no_more_often_than_stated():
+    """At the edge of the indifference region, 5 % of the tests may be wrong."""
     level = 0.3 - 4 * MARGIN
     wrong = sum(
         not sampled(f"Pr[<=2](<> A.heads) >= {level:.2f}", seed).holds for seed in range(10)
@@ -118,18 +164,9 @@ def test_tests_are_wrong_as_seldom_as_they_say():
     assert wrong <= 2
 
 
-def test_a_test_that_is_cut_short_says_nothing():
+def test_a_test_with_too_few_runs_is_undecided():
     one = sampled("Pr[<=2; 50](<> A.heads) >= 0.3")
     assert (one.runs, one.holds, one.margin) == (50, None, MARGIN)
-
-
-@pytest.mark.slow
-def test_expected_values():
-    """The mean of 3 in 0.3 and 1 in 0.7 of the runs is 1.6; the least value is the first."""
-    one = sampled("E[<=2; 2000](max: n)")
-    assert one.low < 1.6 < one.high < one.low + 0.1
-    assert sampled("E[<=2; 100](min: n)").value == 0
-    assert sampled("E[<=2; 2000](max: 10 * n)").low > 15
 
 
 @each(
@@ -147,14 +184,14 @@ def test_expected_values():
         ("Pr[<=2](<> EF A.heads)", "refers to other runs", "Pr[<=T](<> p)"),
     ],
 )
-def test_what_has_no_figure_is_refused_with_the_reason(query, message, fix):
+def test_a_query_without_a_figure_is_refused_with_the_reason(query, message, fix):
     with pytest.raises(ModelError, match=message) as raised:
         sampled(query)
     assert fix in raised.value.diagnostics[0].help
 
 
 @pytest.mark.slow
-def test_the_command_says_figures(tmp_path, capsys, says):
+def test_the_command_reports_figures(tmp_path, capsys, says):
     model = tmp_path / "coin.ta"
     model.write_text(COIN, "utf-8")
     assert main(["verify", str(model), "--query", "Pr[<=2](<> A.heads)"]) == 0
@@ -179,7 +216,7 @@ query: simulate [<=5; 2] {n, x, cost, n > 1}
 """
 
 
-def test_runs_are_shown_as_they_go_on(tmp_path, says):
+def test_trajectories_have_every_change_of_value(tmp_path, says):
     network = loads_network(TICKING)
     found = trajectories(network, network.queries[0])
     assert len(found) == 2
@@ -196,8 +233,8 @@ def test_runs_are_shown_as_they_go_on(tmp_path, says):
 
 
 @pytest.mark.parametrize("text", ["simulate 3 [<=2] {n}", "simulate [<=2; 3] {n}"])
-def test_both_ways_to_write_how_many_runs(text):
-    """Before the brackets, as UPPAAL had it once, and in them; one if nothing is said."""
+def test_the_number_of_runs_may_be_before_or_in_the_brackets(text):
+    """The default is one run."""
     network = loads_network(COIN)
     assert len(trajectories(network, query_on(network, text)[1])) == 3
     assert len(trajectories(network, query_on(network, "simulate[<=2]{n}")[1])) == 1
@@ -208,51 +245,12 @@ def test_both_ways_to_write_how_many_runs(text):
 @pytest.mark.parametrize(
     "query", ["Pr[<=2](<> A.heads)", "simulate 3 [<=2] {n}", "sup: n", "E[<=2; 9](max: n)"]
 )
-def test_what_asks_for_figures_is_no_decision(query):
+def test_a_query_for_figures_cannot_be_verified(query):
     with pytest.raises(ModelError, match="not a decision"):
         verify(loads_network(COIN), query)
 
 
-STOPPED = """
-clock x, used, cost
-bool left
-automaton A {
-  location a invariant x <= 10 and used' == 0
-  location b invariant x <= 10 and used' == 2 and cost' == 3
-  location c rate 1:4
-  location d
-  start a
-  edge a -> b when x == 4
-  edge b -> c when x >= 10
-  edge c -> d do left = true
-}
-"""
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("query", "share"),
-    [
-        ("Pr[<=10](<> A.c and used >= 12)", 1.0),
-        ("Pr[<=10](<> A.c and used > 12)", 0.0),
-        ("Pr[<=7](<> used > 6)", 0.0),
-        ("Pr[<=8](<> used > 6)", 1.0),
-        ("Pr[<=4](<> used > 0)", 0.0),
-    ],
-)
-def test_clocks_stop_and_run_at_other_rates(query, share):
-    """Simulated exactly: 4 units stopped, then 6 at a rate of 2."""
-    assert figure(STOPPED, query).value == share
-
-
-@pytest.mark.slow
-def test_a_wait_without_end_has_the_rate_of_its_location():
-    """A location with rate 1:4 is left within 4 units in 1 - 1/e of the runs."""
-    found = figure(STOPPED, "Pr[<=14; 4000](<> left)")
-    assert found.low < 0.632 < found.high
-
-
-def test_what_stop_watches_reach_is_not_decided():
+def test_the_value_of_a_stop_watch_is_undecidable():
     network = loads_network(STOPPED)
     assert verify(network, "E<> A.c").holds
     for query in ("E<> used > 3", "A<> cost > 3", "G (cost < 9)"):
@@ -265,25 +263,21 @@ def test_what_stop_watches_reach_is_not_decided():
         verify(guarded, "E<> A.c")
 
 
-@pytest.mark.parametrize(
-    ("invariant", "message"),
-    [("used' == n - 1", "set by two automata"), ("cost' == 1 + n", "set by two automata")],
-)
-def test_rates_that_have_no_meaning_are_told(invariant, message):
-    """A run that gets there says which clock and where."""
+@pytest.mark.parametrize("invariant", ["used' == n - 1", "cost' == 1 + n"])
+def test_a_rate_set_by_two_automata_is_an_error_of_the_run(invariant):
     text = STOPPED.replace("bool left", "int[0,3] n\nbool left")
     text += f"automaton B {{ location l invariant {invariant} start l }}"
     network = loads_network(text.replace("used' == 0", "x <= 10"))
-    with pytest.raises(ModelError, match=message):
+    with pytest.raises(ModelError, match="set by two automata"):
         sample(network, query_on(network, "Pr[<=10](<> left)")[1])
 
 
-def test_rates_come_back_from_uppaal():
+def test_rates_survive_the_round_trip_through_xml():
     network = loads_network(STOPPED)
     assert loads_network(uppaal_xml(network)).automata == network.automata
 
 
-def test_rates_may_be_told_for_all_elements():
+def test_rates_may_be_quantified_over_elements():
     text = """
     clock y[2]
     automaton A { location l invariant forall (i : int[0,1]) y[i]' == i and y[i] <= 9 start l }
@@ -304,7 +298,7 @@ def test_rates_may_be_told_for_all_elements():
         ("1:2.5", (2, 5)),
     ],
 )
-def test_how_often_a_location_is_left_is_a_share(written, share):
+def test_the_rate_of_a_location_may_be_a_fraction(written, share):
     text = f"const int OFTEN = 10 automaton A {{ location l rate {written} start l }}"
     (place,) = loads_network(text).automata[0].locations
     assert tuple(number.value for number in place.leaving) == share

@@ -1,4 +1,4 @@
-"""Plans of the native search, for random networks."""
+"""Plans of the native search for random networks."""
 
 from collections.abc import Iterable, Iterator
 
@@ -54,7 +54,7 @@ def search_plans(seeds: Iterable[int]) -> Iterator[Plan]:
 
 
 def _watched(network: Network) -> Network:
-    """A network with a watcher that lets moves pass a unit apart, and makes some of its own."""
+    """The network with a watcher that allows moves a unit apart and makes one of its own."""
     watcher = Watcher(network, [], [""])
     for _ in range(3):
         watcher.add_location([ClockCompare(watcher.clock, ClockOp.LE, Constant(9))])

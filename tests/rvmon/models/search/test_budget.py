@@ -1,4 +1,4 @@
-"""A search stops at its budget and says that it has not decided."""
+"""A search that stops at its budget reports that it is undecided."""
 
 import mmap
 from pathlib import Path
@@ -20,7 +20,7 @@ MODEL = Path(__file__).parents[4] / "examples" / "models" / "train_gate.ta"
      "A[] not deadlock", "Train(0).approach -->[<=1000] Train(0).cross"],
 )  # fmt: skip
 @pytest.mark.parametrize("budget", [Budget(states=100), Budget(seconds=0.0), Budget(megabytes=1)])
-def test_not_decided_is_said(query, budget):
+def test_a_search_that_exceeds_its_budget_is_undecided(query, budget):
     network = load_network(MODEL, constants={"N": 4})
     outcome = verify(network, query, budget=budget)
     assert outcome.holds is None
@@ -28,14 +28,13 @@ def test_not_decided_is_said(query, budget):
     assert outcome.remark.startswith("not decided: ")
 
 
-def test_a_run_found_in_time_decides():
+def test_a_run_found_within_the_budget_decides():
     network = load_network(MODEL, constants={"N": 4})
     assert verify(network, "E<> Train(3).cross", budget=Budget(states=200)).holds is True
 
 
 @pytest.mark.slow
-def test_progress_is_told():
-    """The watcher hears of more and more states."""
+def test_the_watcher_gets_increasing_numbers_of_states():
     heard: list[Progress] = []
     network = load_network(MODEL, constants={"N": 5})
     verify(network, network.queries[0], watch=heard.append)
@@ -45,7 +44,7 @@ def test_progress_is_told():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [3, 18, 40])
-def test_no_budget_turns_an_answer_round(seed):
+def test_no_budget_reverses_an_answer(seed):
     network = loads_network(random_model(seed))
     for query in network.queries:
         answer = verify(network, query).holds
@@ -53,7 +52,7 @@ def test_no_budget_turns_an_answer_round(seed):
             assert verify(network, query, budget=Budget(states=states)).holds in (None, answer)
 
 
-def test_what_is_reached_is_reached_though_no_fastest_run_was_found():
+def test_a_reached_goal_counts_even_if_the_budget_ends_before_the_fastest_run():
     network = load_network(MODEL.with_name("bridge.ta"))
     query = network.queries[0]
     least = verify(network, query).statistics.visited
@@ -62,8 +61,7 @@ def test_what_is_reached_is_reached_though_no_fastest_run_was_found():
     assert outcome.remark.startswith("no fastest run was found: ")
 
 
-def test_memory_that_was_given_back_does_not_count():
-    """A budget of memory is for what is held now, not for what was held before."""
+def test_freed_memory_does_not_count_against_the_budget():
     large = [bytes(1 << 20) for _ in range(64)]
     held = sum(map(len, large)) >> 20
     del large

@@ -13,7 +13,7 @@ pytestmark = pytest.mark.law
 
 
 @pytest.mark.parametrize("first", range(0, 30, 6))
-def test_answers_agree_and_runs_are_runs(first):
+def test_random_answers_agree_with_the_region_graph(first):
     for seed in range(first, first + 6):
         network, steps = loads_network(random_model(seed)), Steps()
         for query in network.queries:
@@ -26,7 +26,7 @@ def test_answers_agree_and_runs_are_runs(first):
             assert outcome.holds == expected, (seed, query.text)
 
 
-def test_all_kinds_of_parts_are_thrown():
+def test_random_models_have_all_kinds_of_parts():
     text = "".join(map(random_model, range(100)))
     for part in ("urgent chan", "broadcast chan", "committed location", "urgent location",
                  "invariant x < ", "== ", " > ", "= 1", "v = ", "b = "):  # fmt: skip
@@ -36,14 +36,14 @@ def test_all_kinds_of_parts_are_thrown():
 @pytest.mark.parametrize(
     ("seed", "query"),
     [
-        (730, 7),  # `right` comes just behind the bound: the run left the piece before its end
+        (730, 7),  # `right` holds just after the bound: the run left the segment before its end
         (1163, 5),
-        (2995, 8),  # a difference of two strict bounds was taken for tighter than one strict bound
+        (2995, 8),  # two strict bounds were taken for tighter than one
         (3108, 9),
         (4929, 8),
     ],
 )
-def test_what_once_was_wrong_is_right_now(seed, query):
+def test_answers_that_once_were_wrong(seed, query):
     network = loads_network(random_model(seed))
     asked = network.queries[query]
     outcome = verify(network, asked)

@@ -1,4 +1,4 @@
-"""Largest and least values are those of all reachable states, and runs show them."""
+"""The largest and least value over all reachable states, each shown by a run."""
 
 import json
 from math import ceil, floor
@@ -47,7 +47,7 @@ def asked(text, query, **options):
         ("sup{A.b and x < 9}: x", [(9, False)]),
     ],
 )
-def test_ends_are_exact(query, expected):
+def test_bounds_are_exact_and_shown_by_a_run(query, expected):
     found = asked(LAMP, query)
     assert [(one.value, one.attained) for one in found] == expected
     assert all(one.exact and one.run is not None for one in found)
@@ -62,7 +62,7 @@ def test_a_clock_may_grow_without_bound():
     assert (round_.value, round_.exact) == (FARTHEST, False)
 
 
-def test_where_nothing_counts_there_is_no_value():
+def test_an_unmet_condition_or_an_exhausted_budget_is_remarked():
     (none,) = asked(LAMP, "sup{n == 3}: n")
     assert (none.value, none.exact, none.remark) == (None, True, "no state meets the condition")
     (cut,) = asked(LAMP, "sup: n", budget=Budget(states=4))
@@ -72,7 +72,7 @@ def test_where_nothing_counts_there_is_no_value():
 
 @pytest.mark.parametrize("first", range(0, 20, 10))
 @pytest.mark.law
-def test_values_are_those_of_the_regions(first):
+def test_random_bounds_agree_with_the_region_graph(first):
     for seed in range(first, first + 10):
         network = loads_network(random_model(seed))
         clocks = range(len(network.clocks))
@@ -106,12 +106,12 @@ def test_values_are_those_of_the_regions(first):
         ("A[] (sup: n)", "expected"),
     ],
 )
-def test_what_has_no_end_is_refused(query, message):
+def test_a_query_without_a_bound_is_refused(query, message):
     with pytest.raises(ModelError, match=message):
         asked(LAMP, query)
 
 
-def test_the_command_answers(tmp_path, capsys, says):
+def test_the_command_reports_bounds(tmp_path, capsys, says):
     model = tmp_path / "lamp.ta"
     model.write_text(LAMP + 'query most "the count ends": sup: n\n', "utf-8")
     told = says(0, "verify", model).out

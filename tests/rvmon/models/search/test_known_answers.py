@@ -1,4 +1,4 @@
-"""Textbook models have the answers that textbooks give."""
+"""Textbook models have their published answers."""
 
 from pathlib import Path
 
@@ -13,7 +13,7 @@ MODELS = Path(__file__).parents[4] / "examples" / "models"
 
 
 def answers(network):
-    """The answer to each query of a network, by id; runs are checked on the way."""
+    """The answer to each query of a network, by id; each run is replayed."""
     found = {}
     for query in network.queries:
         outcome = verify(network, query)
@@ -32,8 +32,8 @@ def test_fischer_is_safe_and_stores_as_few_states_as_the_peer():
     assert (stored[4], stored[5]) == (220, 727)
 
 
-def test_broken_fischer_is_caught():
-    """With >= for > two processes meet, and a concrete run shows how."""
+def test_broken_fischer_is_refuted_by_a_run():
+    """With >= instead of > two processes meet."""
     network = load_network(MODELS / "fischer_broken.ta", constants={"N": 2})
     outcome = verify(network, network.queries[0])
     assert outcome.holds is False
@@ -47,8 +47,7 @@ def test_trains_never_meet_and_always_cross(trains):
     assert answers(network) == {"exclusion": True, "crossing": True, "alive": True}
 
 
-def test_a_gate_without_urgency_may_dawdle():
-    """If `go` is not urgent a stopped train may wait for ever, but trains still never meet."""
+def test_a_stopped_train_may_wait_for_ever_if_go_is_not_urgent():
     text = (MODELS / "train_gate.ta").read_text().replace("urgent chan", "chan")
     network = loads_network(text, constants={"N": 2})
     assert answers(network) == {"exclusion": True, "crossing": False, "alive": True}

@@ -1,4 +1,4 @@
-"""Time passes on a loop if and only if more rounds can take longer, written out round by round."""
+"""Time passes on a loop if and only if more rounds can take longer."""
 
 from math import inf
 from random import Random
@@ -14,7 +14,7 @@ ANYWHERE = [0.0 if x == y or y == 0 else inf for x in range(DIM) for y in range(
 
 
 def longest(loop, rounds):
-    """The longest time of some rounds, in whole units; `None` if they are not possible."""
+    """The longest duration of so many rounds, in whole units; `None` if they are impossible."""
     timing = timing_of(loop * rounds, ANYWHERE)
     if timing is None:
         return None
@@ -47,7 +47,7 @@ def random_loop(random):
 
 
 @pytest.mark.slow
-def test_it_is_what_the_rounds_written_out_say():
+def test_the_answer_agrees_with_unrolled_rounds():
     random, seen = Random(1), []
     for _ in range(700):
         loop = random_loop(random)
@@ -63,8 +63,7 @@ def test_it_is_what_the_rounds_written_out_say():
 
 
 @pytest.mark.slow
-def test_long_loops_are_told_too():
-    """One of hundreds of steps."""
+def test_time_passes_on_a_loop_of_hundreds_of_steps():
     step = TimedStep(True, ((0, 1, 5.0),), (), ())
     last = TimedStep(True, ((0, 1, 5.0),), ((1, 0.0), (2, 0.0)), ())
     assert time_passes([*[step] * 300, last], ANYWHERE, DIM)

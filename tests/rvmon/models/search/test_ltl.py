@@ -1,4 +1,4 @@
-"""Formulas of LTL over all runs, under premises, with a run that shows where they fail."""
+"""LTL formulas on all runs, also under assumptions, with counterexamples."""
 
 import pytest
 from tests.tools.each import each
@@ -42,7 +42,7 @@ automaton A {
         ("E (not A.failed and x < 4 W F (A.failed and x > 5))", False),
     ],
 )
-def test_known_answers(query, expected):
+def test_formulas_have_the_known_answer_and_a_run_that_shows_it(query, expected):
     outcome = verify(loads_network(RETRY), query)
     assert outcome.holds is expected
     assert (outcome.run is not None) == (expected == query.startswith("E"))
@@ -68,21 +68,20 @@ def test_a_loop_on_which_time_passes_is_preferred():
         ("E<> (F A.done)", "CTL"),
     ],
 )
-def test_what_is_not_decided_says_why(query, message):
+def test_an_unsupported_formula_says_why(query, message):
     with pytest.raises(ModelError, match=message):
         verify(loads_network(RETRY), query)
 
 
 @pytest.mark.slow
-def test_a_formula_of_too_many_cases_is_refused_with_its_place():
+def test_a_formula_with_too_many_cases_is_refused_with_its_place():
     parts = " and ".join(f"(F v == {number})" for number in range(8))
     model = loads_network(f"int[0,9] v {RETRY}query q: E ({parts})")
     with pytest.raises(ModelError, match=r"too many cases\n.*:13:1\n"):
         verify(model, model.queries[0])
 
 
-def test_g_and_f_are_names_elsewhere():
-    """Variables, functions of arrays and templates may be called G, F, A, E, U and W."""
+def test_variables_may_be_called_like_temporal_operators():
     text = "int[0,1] G\nint[0,1] F = 1\nint[0,1] U\nautomaton A { location a start a }"
     network = loads_network(text)
     assert verify(network, "A[] (G < F and U == G)").holds

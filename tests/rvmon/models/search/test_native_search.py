@@ -1,4 +1,4 @@
-"""The native search: large numbers, damaged plans, no memory, and being asked to stop."""
+"""The native search: large numbers, damaged plans, lack of memory, and interruption."""
 
 import base64
 import zlib
@@ -30,7 +30,7 @@ ENDED, FOUND, STOPPED, FAILED, NO_MEMORY, TOO_LARGE = range(1, 7)
 
 
 def in_units(formula, factor):
-    """A formula whose times are counted in units that are so many times smaller."""
+    """A formula with all its times multiplied by a factor."""
     match formula:
         case LeadsToFormula(left, right, bound) | BinaryOperation(_, left, right, bound):
             changed = {"left": in_units(left, factor), "right": in_units(right, factor)}
@@ -65,7 +65,7 @@ def test_large_numbers_change_no_answer(factor):
 
 
 def asked(plan, numbers=None, most_bytes=-1, most_states=-1):
-    """What the native search says, with loops that all count."""
+    """The state in which the native search ends if every loop is accepted."""
     numbers = plan.numbers if numbers is None else numbers
     found = search(
         numbers, plan.costs, lambda *_: True, lambda *_: True, most_states, most_bytes, False
@@ -74,7 +74,7 @@ def asked(plan, numbers=None, most_bytes=-1, most_states=-1):
 
 
 @pytest.mark.slow
-def test_a_damaged_plan_is_refused_or_does_no_harm():
+def test_a_damaged_plan_is_refused_or_searched_without_a_crash():
     random, states = Random(5), set()
     for plan in search_plans(range(12)):
         for _ in range(20):
@@ -91,13 +91,13 @@ def test_a_damaged_plan_is_refused_or_does_no_harm():
 
 
 @pytest.mark.parametrize("numbers", [b"", b"\x00" * 4, b"\x31\x30\x4e\x5a", b"\x00" * 400])
-def test_what_is_no_plan_is_refused(numbers):
+def test_bytes_that_are_no_plan_are_refused(numbers):
     with pytest.raises(ValueError, match="damaged"):
         search(numbers, b"", lambda *_: True, lambda *_: True, -1, -1, False)
 
 
 @pytest.mark.slow
-def test_memory_that_ends_anywhere_is_an_answer():
+def test_memory_may_run_out_at_any_point():
     random, without = Random(6), 0
     for plan in search_plans(range(12)):
         answer = asked(plan)
@@ -115,10 +115,10 @@ FAILS_IN_ITS_SECOND_STATE = zlib.decompress(
         "gMw4yjd-qaUyqie)X&}wlNU;LVCEQgeBrq`Pm|87<B=p!c~8`qJgoHY##`bA{}}sN;BC`-1Ir#xp8"
     )
 )
-"""A plan that a fuzzer found: its search took a want of memory for a failure of the model."""
+"""A plan found by a fuzzer: its search mistook lack of memory for a failure of the model."""
 
 
-def test_a_want_of_memory_is_no_failure():
+def test_lack_of_memory_is_not_a_failure_of_the_model():
     told = set()
     for most_bytes in range(0, 20_000, 8):
         state, *_, visited = search(
@@ -134,7 +134,7 @@ def test_a_want_of_memory_is_no_failure():
     assert told == {(FAILED, 2), (NO_MEMORY, 0)}
 
 
-def test_a_query_without_memory_is_not_decided(monkeypatch):
+def test_a_query_is_undecided_if_memory_runs_out(monkeypatch):
     def poor(*arguments):
         return search(*arguments[:5], 20_000, arguments[6])
 
@@ -144,7 +144,7 @@ def test_a_query_without_memory_is_not_decided(monkeypatch):
     assert (outcome.holds, outcome.remark) == (None, "not decided: memory ran out")
 
 
-def test_an_exception_of_the_watcher_ends_the_search():
+def test_an_exception_of_the_watcher_stops_the_search():
     def watch(progress):
         raise KeyboardInterrupt
 
@@ -153,7 +153,7 @@ def test_an_exception_of_the_watcher_ends_the_search():
         verify(network, network.queries[0], watch=watch)
 
 
-def test_other_threads_run_meanwhile():
+def test_other_threads_run_during_a_search():
     heard = []
     thread = Thread(target=heard.append, args=(1,))
 

@@ -1,4 +1,4 @@
-"""Formulas of CTL are decided, with path operators inside others."""
+"""CTL formulas with nested path operators."""
 
 import pytest
 from tests.tools.each import each
@@ -46,18 +46,18 @@ automaton A {
         ("EF[<=5] A.trap or EF[<=6] A.trap", True),
     ],
 )
-def test_nests_are_decided(query, expected):
-    """Of other forms than those of random models, which are compared with regions."""
+def test_nested_formulas(query, expected):
+    """Forms that do not occur in the random models, which are compared with regions."""
     assert verify(loads_network(TRAP), query).holds is expected
 
 
-def test_the_run_leads_to_where_the_inner_formula_holds():
+def test_the_counterexample_leads_to_where_the_inner_formula_fails():
     outcome = verify(loads_network(TRAP), "A[] (A.open imply EF A.start)")
     assert outcome.run.steps[-1].window.low == 4
     assert outcome.run.duration > 5
 
 
-def test_a_formula_decided_backwards_meets_what_breaks_a_range():
+def test_a_value_out_of_range_is_found_when_a_nested_formula_is_decided():
     network = loads_network(
         "int[0,1] v\nautomaton A { location a start a edge a -> a do v = v + 1 }"
     )
@@ -68,6 +68,6 @@ def test_a_formula_decided_backwards_meets_what_breaks_a_range():
     ("query", "said"),
     [("A.open", "TA020"), ("A[] (A.open or A<> A.trap)", "brackets: (A<> …)")],
 )
-def test_what_speaks_of_no_run_or_lacks_brackets_is_refused(query, said):
+def test_a_query_without_a_path_operator_or_brackets_is_refused(query, said):
     (diagnostic,) = findings_of(verify, loads_network(TRAP), query)
     assert said in f"{diagnostic.code}: {diagnostic.help}"

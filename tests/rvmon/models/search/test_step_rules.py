@@ -1,4 +1,4 @@
-"""Small networks show each rule of the step by what can and cannot be reached."""
+"""The rules for steps, each shown by what a small network can and cannot reach."""
 
 import pytest
 from tests.tools.each import each
@@ -68,7 +68,7 @@ RULES = {
         PAIR.format(kind=""),
         {"E<> Left.m": True, "E<> Right.m": True, "E<> Left.m and Right.m": False},
     ),
-    "a broadcast takes all that can receive, in the order of the automata": (
+    "a broadcast reaches all that can receive, in the order of the automata": (
         PAIR.format(kind="broadcast "),
         {
             "E<> Sender.t and not (Left.m and Right.m)": False,
@@ -84,17 +84,23 @@ RULES = {
         WRITTEN.format(receives="when v == 2 on c?"),
         {"E<> A.b": False},
     ),
-    "time passes beside a channel": (PAIR.format(kind=""), {"E<> x > 0 and Sender.s": True}),
-    "an urgent channel stops it": (PAIR.format(kind="urgent "), {"E<> x > 0 and Sender.s": False}),
-    "an urgent broadcast stops it as soon as its sender can send": (
+    "a ready channel lets time pass": (
+        PAIR.format(kind=""),
+        {"E<> x > 0 and Sender.s": True},
+    ),
+    "an urgent channel does not": (
+        PAIR.format(kind="urgent "),
+        {"E<> x > 0 and Sender.s": False},
+    ),
+    "an urgent broadcast stops time as soon as its sender can send": (
         RADIO,
         {"E<> A.a and x > 0": False, "E<> A.b and x > 0": True},
     ),
-    "an urgent location stops it, and lets other steps go": (
+    "an urgent location stops time, but no other steps": (
         TWO.format(kind="urgent"),
         {"E<> A.a and x > 0": False, "E<> A.b and x > 0": True, "E<> A.a and B.b": True},
     ),
-    "a committed location stops it, and goes first": (
+    "a committed location stops time and goes first": (
         TWO.format(kind="committed"),
         {"E<> A.a and x > 0": False, "E<> A.b and x > 0": True, "E<> A.a and B.b": False},
     ),
@@ -102,16 +108,16 @@ RULES = {
         BLOCKED.format(update=""),
         {"E<> A.b": False},
     ),
-    "it is behind the update that the invariant counts": (
+    "the invariant is evaluated after the update": (
         BLOCKED.format(update="do x = 0"),
         {"E<> A.b": True},
     ),
-    "elements chosen by a variable are found as if they were named": (
+    "a variable may select a channel or an element": (
         ARRAYS,
         {"A[] (A.b imply B.got == 2)": True, "A[] (A.b imply list[who] == 0)": True},
     ),
     **{
-        f"P is above Q unless Q's channel is above steps without one: {ranks} {on}": (
+        f"P outranks Q unless Q's channel outranks steps without one: {ranks} {on}": (
             RANKS.format(ranks=ranks, on=on),
             {"E<> Q.r and P.p": first},
         )
@@ -126,20 +132,19 @@ RULES = {
 
 
 @each("rule", RULES)
-def test_a_step_is_taken_by_its_rule(rule):
+def test_steps_follow_the_rule(rule):
     text, answers = RULES[rule]
     network = loads_network(text)
     assert {query: verify(network, query).holds for query in answers} == answers
 
 
-def test_a_run_that_is_drawn_leaves_a_committed_location():
+def test_a_random_run_leaves_a_committed_location():
     network = loads_network(TWO.format(kind="committed"))
     leaves = query_on(network, "Pr[<=9; 20](<> A.b)")[1]
     assert sample(network, leaves).value == 1
 
 
-def test_a_step_waits_for_those_of_higher_priority():
-    """What is possible at an instant by guards keeps back what is lower, and only then."""
+def test_a_step_is_blocked_only_while_one_of_higher_priority_is_enabled():
     network = loads_network("""
     clock x
     broadcast chan low, high
@@ -154,13 +159,12 @@ def test_a_step_waits_for_those_of_higher_priority():
     """)
     assert verify(network, "E<> A.b and x > 1").holds
     assert verify(network, "E<> A.d").holds
-    # From 2 on `high` can be taken, up to 1 the edge without a channel: `low` between only.
+    # The edge without a channel blocks `low` up to 1, and `high` blocks it from 2.
     between = query_on(network, "Pr[<=9; 20]([] not (A.b and x <= 1))")[1]
     assert sample(network, between).value == 1
 
 
-def test_what_cannot_be_entered_keeps_nothing_back():
-    """A step of high priority needs the invariant behind it, now or with other values."""
+def test_a_step_whose_target_invariant_is_false_blocks_no_other():
     text = """
     clock x
     int[0,9] v
@@ -177,8 +181,7 @@ def test_what_cannot_be_entered_keeps_nothing_back():
     assert run.steps[0].window == Window(2, None, low_strict=True)
 
 
-def test_what_fails_keeps_back_and_is_told():
-    """A step of high priority whose update has no value is an error, not a way for others."""
+def test_a_failing_update_of_high_priority_is_an_error_and_unblocks_nothing():
     text = """
     int[0,1] v
     broadcast chan high

@@ -1,4 +1,4 @@
-"""Suites go through everything that can be gone through, with runs that are runs."""
+"""A suite covers every reachable item, with runs of the network."""
 
 from pathlib import Path
 
@@ -14,7 +14,7 @@ MODELS = Path(__file__).parents[4] / "examples" / "models"
 
 
 def items_of(network, run, criterion):
-    """The items that a run goes through, read off the run itself."""
+    """The items that a run covers, computed from its steps."""
     places = {(i, place) for i, place in enumerate(run.start.locations)}
     edges, pairs, last = set(), set(), {}
     for step in run.steps:
@@ -31,7 +31,7 @@ def items_of(network, run, criterion):
 @pytest.mark.slow
 @pytest.mark.parametrize("criterion", list(Criterion))
 @pytest.mark.parametrize("model", ["fischer", "train_gate", "bridge"])
-def test_what_is_said_to_be_covered_is(model, criterion):
+def test_the_runs_of_a_suite_cover_the_items_it_claims(model, criterion):
     constants = {} if model == "bridge" else {"N": 2}
     network = load_network(MODELS / f"{model}.ta", constants=constants)
     suite = build_suite(network, criterion)
@@ -51,7 +51,7 @@ def test_what_is_said_to_be_covered_is(model, criterion):
     [
         (Criterion.LOCATIONS, ["A.c"]),
         (Criterion.EDGES, ["A: a → c", "A: c → b"]),
-        # The pairs: by an edge that cannot be taken, and by one that comes too early for the other.
+        # Pairs with an edge that is never enabled, and pairs whose times do not fit.
         (
             Criterion.EDGE_PAIRS,
             [
@@ -63,7 +63,7 @@ def test_what_is_said_to_be_covered_is(model, criterion):
         ),
     ],
 )
-def test_missing_items_are_those_that_cannot_be_reached(criterion, missing):
+def test_the_missing_items_are_the_unreachable_ones(criterion, missing):
     network = loads_network("""
     clock x
     automaton A {
@@ -84,7 +84,7 @@ def test_missing_items_are_those_that_cannot_be_reached(criterion, missing):
     assert [item_text(network, item, criterion) for item in suite.missing] == missing
 
 
-def test_a_budget_is_told():
+def test_a_suite_stopped_by_its_budget_says_so():
     network = load_network(MODELS / "train_gate.ta", constants={"N": 4})
     suite = build_suite(network, Criterion.EDGES, budget=Budget(states=20))
     assert suite.stopped

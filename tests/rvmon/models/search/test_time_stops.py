@@ -1,4 +1,4 @@
-"""Zeno loops, time-locks and deadlocks are told apart and said to be what they are."""
+"""Zeno loops, time-locks and deadlocks are told apart."""
 
 import pytest
 from tests.tools.each import each
@@ -44,31 +44,31 @@ automaton A {
 IDLE = "automaton A { location a location b start a edge a -> b }"
 
 ENDINGS = {
-    "a loop in which time cannot pass on is no plain counterexample": (
+    "a loop on which time cannot diverge is a Zeno loop": (
         *(LOOP.format(first=""), "A<> A.b", Ending.ZENO_LOOP),
     ),
-    "if the loop resets the clock, time passes and the run is a real one": (
+    "if the loop resets the clock, time diverges": (
         *(LOOP.format(first="do x = 0"), "A<> A.b", Ending.LOOP),
     ),
-    "where a Zeno loop and a real loop both avoid the goal, the real one is shown": (
+    "if a Zeno loop and a real loop both avoid the goal, the real one is shown": (
         *(LOOP.format(first="edge a -> a when x >= 1 do x = 0"), "A<> A.b", Ending.LOOP),
     ),
-    "delays that must shrink from round to round add up to less than a bound": (
+    "delays that must shrink from round to round have a bounded sum": (
         *(CONVERGING, "A<> A.b", Ending.ZENO_LOOP),
     ),
     "a state that must be left but cannot be is a time-lock": (
         *(LOCKED, "A[] not (deadlock and A.b)", Ending.TIME_LOCK),
     ),
-    "and so it is where something is awaited": (LOCKED, "A.b --> A.c", Ending.TIME_LOCK),
-    "a state that nothing leaves while time goes on is a deadlock": (
+    "a time-lock refutes a leads-to": (LOCKED, "A.b --> A.c", Ending.TIME_LOCK),
+    "a state without moves in which time passes is a deadlock": (
         *(IDLE, "A[] not deadlock", Ending.DEADLOCK),
     ),
-    "idling there is a run": (IDLE, "A<> A.b", Ending.IDLE),
+    "a run may idle in a deadlock": (IDLE, "A<> A.b", Ending.IDLE),
 }
 
 
 @each("name", ENDINGS)
-def test_a_run_that_refutes_is_told_by_how_it_ends(name):
+def test_a_counterexample_reports_how_it_ends(name):
     text, query, ending = ENDINGS[name]
     outcome = verify(loads_network(text), query)
     assert (outcome.holds, outcome.run.ending) == (False, ending)
@@ -76,7 +76,7 @@ def test_a_run_that_refutes_is_told_by_how_it_ends(name):
 
 
 def test_a_deadlock_in_part_of_a_zone_is_found():
-    """Only some clock values are stuck; simulation would overlook or invent it."""
+    """Only some clock values are stuck."""
     network = loads_network("""clock x, y
     automaton A { location a invariant y <= 3  location b invariant y <= 3  start a
     edge a -> b when x >= 1 do x = 0  edge b -> b when x == 2 do x = 0, y = 0 }""")

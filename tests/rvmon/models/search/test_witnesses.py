@@ -1,4 +1,4 @@
-"""Runs come with the exact window of each wait, and any choice inside the windows is a run."""
+"""A run comes with the exact window of each wait."""
 
 from fractions import Fraction
 
@@ -24,7 +24,6 @@ automaton A {
 
 
 def test_windows_are_exact():
-    """Each wait's window holds all and only the durations that some run has."""
     run = verify(loads_network(RELAY), "E<> A.c").run
     assert [step.window for step in run.steps] == [
         Window(2, 5, False, False),
@@ -35,8 +34,7 @@ def test_windows_are_exact():
 
 
 @pytest.mark.parametrize("position", [0, 1])
-def test_a_wrong_delay_is_no_run(position):
-    """The plain rules reject a run with one delay outside its window."""
+def test_replay_rejects_a_delay_outside_its_window(position):
     network = loads_network(RELAY)
     run = verify(network, "E<> A.c").run
     steps = list(run.steps)
@@ -48,7 +46,7 @@ def test_a_wrong_delay_is_no_run(position):
 
 
 def test_each_policy_finds_its_run():
-    """The shortest takes long, the fastest is improbable, the likeliest has most steps."""
+    """The shortest run takes long, the fastest is improbable, the likeliest has most steps."""
     network = loads_network("""
     clock x
     automaton A {
@@ -70,7 +68,7 @@ def test_each_policy_finds_its_run():
     }
 
 
-def test_the_fastest_run_counts_the_goal_too():
+def test_the_duration_of_the_fastest_run_includes_the_wait_for_the_goal():
     network = loads_network("""
     clock x
     automaton A {

@@ -1,7 +1,7 @@
-"""Formulas of CTL on the regions of a small network, by plain fixpoints, and random ones.
+"""Decides timed CTL on the region graph of a small network, by plain fixpoints.
 
-What a formula says is worked out as the set of regions where it holds, from the inside out; bounds
-count on a second graph, whose regions have a timer that begins at 0.
+The set of regions in which a formula holds is computed from the inside out. Bounds are checked on
+a second graph, whose regions have an additional timer that starts at 0.
 
 Source: Alur, Courcoubetis, Dill, Model-Checking in Dense Real-Time, 1993, section 4.
 """
@@ -28,7 +28,7 @@ Regions = frozenset[Region]
 def holds_at_start(
     network: Network, query: Query, limit: int = 2_000, steps: Steps | None = None
 ) -> bool:
-    """Whether a query holds, whatever operators of CTL it has."""
+    """Whether a query holds initially, with any operators of CTL."""
     formula = query.formula
     assert not isinstance(formula, ValueQuery)
     if isinstance(formula, LeadsToFormula):
@@ -40,7 +40,7 @@ def holds_at_start(
 
 
 class _Truth:
-    """Where formulas hold."""
+    """Computes the regions in which formulas hold."""
 
     def __init__(
         self, network: Network, formula: Expression, limit: int, steps: Steps | None
@@ -52,7 +52,7 @@ class _Truth:
         self._plain = _Steps(self._regions, self._regions.reachable([self.start]))
         if known:
             timed = RegionGraph(network, [formula], max(known), 4 * limit, steps)
-            # A bound of the outermost operator alone counts from the start alone.
+            # If only the outermost operator has a bound, the timer starts only at the start.
             is_outermost = isinstance(formula, PathFormula) and formula.bound and len(known) == 1
             starts = [self.start] if is_outermost else self._plain.nodes
             self._timed = _Steps(timed, timed.reachable(map(timed.restarted, starts)))
@@ -109,7 +109,7 @@ class _Truth:
 
 
 class _Steps:
-    """Regions and the steps between them."""
+    """Regions and the actions and delays between them."""
 
     def __init__(self, graph: RegionGraph, nodes: set[Region]) -> None:
         self.nodes = frozenset(nodes)
@@ -124,7 +124,7 @@ class _Steps:
         self._all.add_nodes_from(nodes)
 
     def until(self, body: Regions, left: Regions, *, every: bool) -> Regions:
-        """From where some path, or every one, leads to a set through another only."""
+        """The regions from which some path, or every one, stays in `left` until it is in `body`."""
         found, pending = set(body), list(body)
         while pending:
             for node in self._all.predecessors(pending.pop()):
@@ -137,7 +137,7 @@ class _Steps:
         return frozenset(found)
 
     def before_actions(self, body: Regions) -> Regions:
-        """From where, now or later, the next action can lead to a set."""
+        """The regions from which the next action, perhaps after a delay, can lead to `body`."""
         found = {a for a, b in self._actions.edges if b in body}
         for node in list(found):
             if node in self._delays:
