@@ -120,7 +120,7 @@ class Words:
         if verdict:
             return f"{atom.quoted} {atom.was(True)} {at}{self._in_time(node, moment)}"
         seen = f"{atom.was(False)} {at}"
-        if not atom.is_event:
+        if not atom.is_event and atom.lasting:
             text = atom.quoted.strip("`")
             seen = moment.turned(cause.literal.proposition, text, atom.truth(False))
         return f"{atom.quoted} {seen}{self._required(node, atom, moment)}"

@@ -297,3 +297,12 @@ def test_what_one_record_shows_is_its_own():
     first.at_decision.clear()
     assert second.at_trigger
     assert second.at_decision == {"e": True, "p": True}
+
+
+def test_a_payload_that_is_too_large_has_no_history():
+    """Its comparison is false wherever the event does not occur, which is no news."""
+    spec = rvmon.loads(
+        "event pick(f: real)\nrequirement R\n  upon pick then immediately pick.f <= 10\n"
+    )
+    [failed] = spec.evaluate([(0, {}), (1, {"pick": {"f": 20.0}})]).attempts
+    assert failed.reason == "`pick.f <= 10` was false at 1 s; it had to be true then"
