@@ -24,6 +24,7 @@ from pathlib import Path
 
 from benchmarks.process import measured
 from benchmarks.program import program
+from tests.rvmon.core.exported import updates_of
 from tests.tools.differential import cases_of, disagreements
 from tests.tools.drive import Found, Lost, told
 from tests.tools.forms import Compiler, Maker
@@ -33,8 +34,7 @@ from rvmon.monitor.packed_plan import PlannedCore, planned_core
 from rvmon.native import sources as core_sources
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile
-from rvmon.trace.sample import Sample, Scalar, Value
-from rvmon.trace.schema import Kind
+from rvmon.trace.sample import Sample, Value
 
 ROOT = Path(__file__).resolve().parent.parent
 CORE = Path(core_sources.FOLDER)
@@ -42,7 +42,6 @@ REPLAY = Path(__file__).with_name("core_replay.c")
 FLAGS = ("-std=c99", "-O1", "-ffp-contract=off", "-w")
 MOST_MEMORY = 2 << 30
 
-_NO, _UNKNOWN, _YES = 0, 1, 2
 _NO_TIME = -(1 << 63)
 
 PROFILE = Profile(crowded=5, many=8, wide=20, amounts=20)
@@ -87,26 +86,8 @@ def _case(planned: PlannedCore, case: Case) -> Iterator[int]:
 def _updates(planned: PlannedCore, values: Mapping[str, Value]) -> Iterator[Sequence[int]]:
     """For each update: number of the name, kind of update, value, number of fields, fields."""
     for name, value in values.items():
-        number, kind = planned.numbers[name], planned.packed.signals.get(name)
-        if isinstance(value, tuple | Mapping):
-            kinds = {field: one for (of, field), one in planned.packed.fields.items() if of == name}
-            for payload in value if isinstance(value, tuple) else (value,):
-                fields = [_number(planned, one, payload.get(field)) for field, one in kinds.items()]
-                yield number, _YES, 0, 0, len(fields), *itertools.chain(*fields)
-        elif kind is not None:
-            known = _number(planned, kind, value)
-            yield number, _YES if known[0] else _UNKNOWN, *known, 0
-        else:
-            yield number, _UNKNOWN if value is None else _YES if value else _NO, 0, 0, 0
-
-
-def _number(planned: PlannedCore, kind: Kind, value: Scalar) -> tuple[int, int]:
-    """The kind and the bits of a value as in `rv_number`."""
-    if value is None or value != value:
-        return 0, 0
-    if kind is Kind.REAL:
-        return 2, struct.unpack("<q", struct.pack("<d", float(value)))[0]
-    return 1, planned.packed.labels[str(value)] if kind is Kind.LABEL else int(value)
+        for number, says, known, fields in updates_of(planned, name, value):
+            yield number, says, *known, len(fields), *itertools.chain(*fields)
 
 
 def sources() -> list[Path]:

@@ -1,10 +1,11 @@
-"""The native code under AFL++, with guarded memory blocks: plans, samples, snapshots and models.
+"""The native code under AFL++, with guarded memory blocks: monitors, models, and CSV.
 
 The bytes of a plan or a snapshot get a matching hash, so that the fuzzer gets past that check.
 Accepted bytes judge some samples. Each run is repeated after a reset, and with other monitors that
 continue it from snapshots; both must give the same results. Then it is repeated with limited
-memory, and must not be green. Models are searched with bounds of 32 and of 64 bits, which must
-agree. An input fails if the core crashes or hangs, or if a sanitizer reports an error.
+memory, and must not be green. Models are searched with bounds of 32 and of 64 bits, and CSV is read
+in three ways, which must agree. An input fails if the code crashes or hangs, or if a sanitizer
+reports an error.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from fuzz.sanitize import guarded_memory
+from fuzz.targets import seeds
 from tests.rvmon.core.put_away import HEAD, tell
 from tests.rvmon.models.search.plans import search_plans
 from tests.tools.drive import told
@@ -33,17 +35,20 @@ from rvmon.native import sources as core_sources
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace
 
-HARNESS = Path(__file__).with_name("harness.c")
 CORE = Path(core_sources.FOLDER)
-ZONES_HARNESS = HARNESS.with_name("zones.c")
-ZONES = HARNESS.parents[1] / "src" / "rvmon" / "models" / "native"
+OTHERS = {
+    "models": (Path(core_sources.ZONES_FOLDER), "zones.c"),
+    "csv": (Path(core_sources.CSV_FOLDER), "csv.c"),
+}
+"""The targets of the other extensions: their sources, and the harness."""
 COMPILER = "afl-clang-fast"
 FLAGS = (
     *("-std=c99", "-g", "-O1", "-fno-omit-frame-pointer", "-ffp-contract=off"),
     *("-fsanitize=fuzzer,address,undefined", "-fno-sanitize-recover=all"),
 )
 
-TARGETS = {"plans": ("-DPLANS",), "samples": (), "snapshots": ("-DSNAPSHOTS",), "models": ()}
+TARGETS = {"plans": ("-DPLANS",), "samples": (), "snapshots": ("-DSNAPSHOTS",)}
+TARGETS |= dict.fromkeys(OTHERS, ())
 """Each target, and the options with which the harness is compiled for it."""
 
 SMALL = 6_000
@@ -120,16 +125,15 @@ def compiled(folder: Path, target: str) -> Path:
     Raises:
         CalledProcessError: the compiler failed.
     """
-    made, home = folder / target, CORE
-    if target == "models":
-        home = ZONES
+    made, memory = folder / target, folder / "memory.c"
+    home, harness = OTHERS.get(target, (CORE, "harness.c"))
+    if target in OTHERS:
         sources = [path for path in home.glob("*.c") if path.name != "module.c"]
-        sources.append(ZONES_HARNESS)
     else:
-        memory = folder / "memory.c"
         memory.write_text(guarded_memory(), encoding="utf-8")
-        names = [name for name in core_sources.core_files() if name != "memory.c"]
-        sources = [*(CORE / name for name in names), HARNESS, memory]
+        sources = [CORE / name for name in core_sources.core_files() if name != "memory.c"]
+        sources.append(memory)
+    sources.append(Path(__file__).with_name(harness))
     flags = [*FLAGS, f"-I{home}", *TARGETS[target]]
     words = [COMPILER, *flags, *map(str, sources), "-lm", "-o", str(made)]
     subprocess.run(words, check=True, capture_output=True)
@@ -144,6 +148,8 @@ def begun_with(folder: Path, target: str) -> None:
             inputs = [*plans("plans", most=60, limit=SMALL)]
         case "models":
             inputs = [searched.numbers for searched in search_plans(range(12))]
+        case "csv":  # bytes that describe the columns, and a text
+            inputs = [rng.randbytes(5) + data[1:] for data in seeds("recording")]
         case "snapshots":
             held, inputs = map(list, zip(*snapshots(PLANS), strict=True))
         case _:

@@ -136,32 +136,46 @@ def _plans(names: Sequence[str]) -> str:
 
 def _update(planned: PlannedCore, name: str, value: Value) -> Iterator[str]:
     """The lines of an update."""
+    for number, says, known, fields in updates_of(planned, name, value):
+        yield f"u {number} {says} {_text(known)}"
+        for place, field in enumerate(fields):
+            yield f"f {place} {_text(field)}"
+
+
+def _text(number: tuple[int, int]) -> str:
+    kind, bits = number
+    return f"{kind} {bits & 0xFFFF_FFFF_FFFF_FFFF:x}"
+
+
+Update = tuple[int, int, tuple[int, int], list[tuple[int, int]]]
+"""The number of a name, the kind of update, the value of a signal, the fields of a payload."""
+
+
+def updates_of(planned: PlannedCore, name: str, value: Value) -> Iterator[Update]:
+    """The updates that give a value, as the core takes them; several payloads are as many."""
     number, packed = planned.numbers[name], planned.packed
     if name in packed.signals:
-        found = _number(value, packed.signals[name], packed.labels)
-        says = _SAYS_UNKNOWN if found.startswith(str(_UNKNOWN)) else _SAYS_YES
-        yield f"u {number} {says} {found}"
+        known = _number(value, packed.signals[name], packed.labels)
+        yield number, _SAYS_UNKNOWN if known[0] == _UNKNOWN else _SAYS_YES, known, []
     elif value is None or value == () or isinstance(value, bool):
         says = _SAYS_UNKNOWN if value is None else _SAYS_YES if value else _SAYS_NO
-        yield f"u {number} {says} {_UNKNOWN} 0"
+        yield number, says, (_UNKNOWN, 0), []
     else:
         kinds = {field: kind for (event, field), kind in packed.fields.items() if event == name}
         for payload in value if isinstance(value, tuple) else (value,):
             assert isinstance(payload, Mapping)
-            yield f"u {number} {_SAYS_YES} {_UNKNOWN} 0"
-            for place, (field, kind) in enumerate(kinds.items()):
-                yield f"f {place} {_number(payload.get(field), kind, packed.labels)}"
+            fields = [_number(payload.get(one), kinds[one], packed.labels) for one in kinds]
+            yield number, _SAYS_YES, (_UNKNOWN, 0), fields
 
 
-def _number(value: Scalar | Any, kind: Kind, labels: Mapping[str, int]) -> str:
-    """Kind and bits of a number."""
+def _number(value: Scalar | Any, kind: Kind, labels: Mapping[str, int]) -> tuple[int, int]:
+    """The kind and the bits, as a signed integer, of a value as in `rv_number`."""
     if value is None or value != value:
-        return f"{_UNKNOWN} 0"
+        return _UNKNOWN, 0
     if kind is Kind.REAL:
-        (bits,) = struct.unpack("=Q", struct.pack("=d", value))
-        return f"{_REAL} {bits:x}"
-    whole = labels[str(value)] if kind is Kind.LABEL else int(value)
-    return f"{_WHOLE} {whole & 0xFFFF_FFFF_FFFF_FFFF:x}"
+        (bits,) = struct.unpack("=q", struct.pack("=d", value))
+        return _REAL, bits
+    return _WHOLE, labels[str(value)] if kind is Kind.LABEL else int(value)
 
 
 def _record(row: Any, values: Any) -> str:

@@ -5,6 +5,7 @@ import random
 import struct
 from pathlib import Path
 
+import numpy as np
 import pytest
 from tests.tools.each import each
 
@@ -12,6 +13,7 @@ import rvmon
 from rvmon.recordings import csv_batch, places
 from rvmon.recordings.batch import Batch
 from rvmon.recordings.csv_rows import csv_samples, read_layout, split_lines
+from rvmon.recordings.csv_text import native_csv
 from rvmon.recordings.rows import Rows
 
 SPEC = rvmon.loads("""
@@ -208,3 +210,21 @@ def test_dates_are_exact(tmp_path):
     for text in texts:
         path.write_text(f"t,p\n{text},1\n")
         assert read(spec.recording(path)) == read(samples_of_csv(spec, path)), text
+
+
+@pytest.mark.parametrize(
+    ("slots", "kind"), [([], 6), ([1], 6), ([-2], 6), ([0], -1), ([0], 16), ([0], 2**31 - 1)]
+)
+def test_columns_that_do_not_exist_are_refused(slots, kind):
+    """The tables of the C reader are indexed by them; an empty row would have no end."""
+
+    def read(slots, kind):
+        """The number of rows that are read of a text."""
+        arrays = np.zeros((1, 4), np.int64), np.zeros((1, 4), np.uint8), np.zeros(4, np.int64)
+        labels = np.zeros((4, 4), np.int64), np.zeros((4, 4), np.int64), np.zeros(8, np.int32)
+        packed = np.array(slots, np.int32).tobytes(), np.array([kind], np.int32).tobytes()
+        return native_csv.read(b"1\n2\n", 0, True, 9, *packed, None, *arrays, *labels)[1]
+
+    assert [read([0], 6), read([0], 15)] == [2, 2]
+    with pytest.raises(ValueError, match="do not fit"):
+        read(slots, kind)

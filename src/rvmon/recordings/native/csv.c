@@ -33,10 +33,11 @@ int64_t csv_label(csv_reader *r, int32_t column, csv_sort sort, csv_cell c)
     }
     for (slot = hash % (2 * (uint32_t)r->label_room);; slot = (slot + 1) % (2 * (uint32_t)r->label_room)) {
         const int32_t found = r->table[slot] - 1;
-        const int64_t *own = &r->labels[4 * (int64_t)found];
+        const int64_t *own;
         if (found < 0) {
             break;
         }
+        own = &r->labels[4 * (int64_t)found];
         if ((own[0] == column) && (own[3] == (int64_t)sort)
             && ((sort != CSV_TEXT)
                 || (((own[2] < 0) == c.is_doubled)

@@ -15,6 +15,7 @@
    for all numbers of its sort. Stamps have CSV_STAMP plus the decimal places from their unit to a
    tick: 9 for seconds, 0 for ticks. */
 enum { CSV_BOOL, CSV_INT, CSV_REAL, CSV_LABEL, CSV_ANY, CSV_DATE, CSV_STAMP };
+#define CSV_PLACES 9 /* the most decimal places of a stamp */
 
 /* Sorts of cells of CSV_ANY: 0, 1, another whole number of up to 18 digits, another number; CSV_TEXT
    is everything else. */

@@ -25,7 +25,7 @@ static double slow_number(void *taken, const char *text)
     return found;
 }
 
-/* Whether all buffers are large enough, and slots are columns. */
+/* Whether all buffers are large enough, slots are columns, and kinds exist. */
 static bool fit(const csv_reader *r, const Py_buffer *numbers, const Py_buffer *says,
                 const Py_buffer *table)
 {
@@ -36,7 +36,12 @@ static bool fit(const csv_reader *r, const Py_buffer *numbers, const Py_buffer *
             return false;
         }
     }
-    return (r->at >= 0) && (r->at <= r->size) && (r->columns > 0)
+    for (i = 0; i < r->columns; i++) {
+        if ((r->kinds[i] < 0) || (r->kinds[i] > CSV_STAMP + CSV_PLACES)) {
+            return false;
+        }
+    }
+    return (r->at >= 0) && (r->at <= r->size) && (r->width > 0) && (r->columns > 0)
            && (numbers->len / 8 >= cells) && (says->len >= cells)
            && (table->len / 8 >= r->label_room) && (r->label_room >= r->columns)
            && (r->label_room < INT32_MAX / 4) && (r->odd_room >= r->columns);
