@@ -1,4 +1,4 @@
-"""A tiny system under test, for campaigns of a second."""
+"""A tiny system under test for campaigns of about a second."""
 
 import os
 import time

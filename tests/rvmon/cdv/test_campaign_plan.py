@@ -1,4 +1,4 @@
-"""Which tests a campaign plays."""
+"""The tests that a campaign plays."""
 
 import pytest
 
@@ -7,8 +7,8 @@ from rvmon.cdv.campaign_plan import plan
 from rvmon.errors import RvmonError, UnknownNameError
 
 
-def test_tests_are_played_on_the_robots_that_they_are_written_for(campaign, spec):
-    """One without a robot on all of them, in the order of robots, strategies and tests."""
+def test_tests_are_played_on_their_robots(campaign, spec):
+    """A test without a robot is played on all, in the order of robots, strategies and tests."""
     robots = {name: cdv.Robot(object, spec) for name in ("a", "b")}
     chosen = plan(campaign(("any", {}), ("for-b", {"robot": "b"}), robots=robots))
     assert [(job.robot, job.test.name) for job in chosen.jobs()] == [
@@ -28,8 +28,8 @@ def test_tests_are_played_on_the_robots_that_they_are_written_for(campaign, spec
         (["a b"], "use letters, digits"),
     ],
 )
-def test_a_name_is_that_of_a_file_and_unique(campaign, names, told):
-    """Or one test would be written over the other, or anywhere."""
+def test_names_of_tests_are_unique_file_names(campaign, names, told):
+    """Otherwise a test would overwrite another one, or be written anywhere."""
     with pytest.raises(cdv.TestError, match=told):
         plan(campaign(*((name, {}) for name in names)))
 

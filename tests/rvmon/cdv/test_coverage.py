@@ -1,4 +1,4 @@
-"""What a campaign's tests show: hits of all models, a database and a page for each robot."""
+"""Coverage of a campaign: hits of all models, a database and a page for each robot."""
 
 import random
 import sqlite3
@@ -31,7 +31,7 @@ cover stands = speed == 0
 
 
 class Lift:
-    """Goes at the speeds that its seed draws."""
+    """Runs at speeds drawn from its seed."""
 
     def play(self, test, observer):
         """Play ten seconds."""
@@ -52,7 +52,7 @@ def lifts(count, _seed):
 
 @pytest.fixture
 def campaign(tmp_path):
-    """A campaign against two lifts, of which one is asked for less."""
+    """A campaign against two lifts, one of them with fewer goals."""
     (tmp_path / "lift.rv").write_text(SPEC)
     (tmp_path / "further.rv").write_text(FURTHER)
     specs = tmp_path / "lift.rv", (tmp_path / "further.rv",)
@@ -76,8 +76,8 @@ def test_all_models_are_gathered(campaign):
     assert old.keys() == {"states", "transitions", "pairs of transitions"}
 
 
-def test_states_give_transitions_by_themselves(campaign):
-    """From each to each other one; where some are listed, none but these, and the pairs of them."""
+def test_states_imply_transitions(campaign):
+    """From each state to each other one; if some are listed, only these and their pairs."""
     three = replace(campaign, states=("stands", "moves", "waits"), transitions=None)
     groups = coverage_model(three, "new").groups
     assert len(groups["transitions"].items) == 6

@@ -1,4 +1,4 @@
-"""Evidence of campaigns: tests that are played again, from the archive alone."""
+"""Evidence of campaigns: tests are replayed from the archive alone."""
 
 import json
 
@@ -15,7 +15,7 @@ TESTS = [("low", {"level": 1.0}), ("crash", {"does": "crash"}), ("kill", {"does"
 
 
 class Reckless:
-    """Climbs higher than it should, whatever the test says."""
+    """Climbs higher than the test allows."""
 
     def play(self, test, observer):
         observer(0, {"level": 9.0})
@@ -24,7 +24,7 @@ class Reckless:
 
 @pytest.fixture
 def made(campaign, tmp_path, monkeypatch):
-    """Plays a campaign of some of the tests, and keeps its evidence in `e.zip`."""
+    """Plays a campaign of some tests and writes its evidence to `e.zip`."""
     monkeypatch.chdir(tmp_path)
 
     def kept(count):
@@ -36,7 +36,7 @@ def made(campaign, tmp_path, monkeypatch):
 
 
 def verify(capsys, campaign, *words):
-    """The exit code of verifying, and what it says."""
+    """The exit code and output of `evidence verify`."""
     capsys.readouterr()
     verified = ["evidence", "e.zip", *words]
     code = main(verified) if campaign is None else cli.main(campaign, verified)
@@ -73,8 +73,8 @@ def test_another_robot_is_found(made, spec, campaign, capsys):
     assert "toys has changed since" in told
 
 
-def test_only_its_own_program_plays_tests(made, campaign, capsys):
-    """`rvmon` checks the rest and says who does; another campaign says that it is none of it."""
+def test_only_the_campaigns_own_program_replays_tests(made, campaign, capsys):
+    """`rvmon` checks the rest and names the program; another campaign refuses the archive."""
     made(1)
     code, told = verify(capsys, None)
     assert (code, "evidence e.zip`" in told) == (2, True)
@@ -82,8 +82,8 @@ def test_only_its_own_program_plays_tests(made, campaign, capsys):
     assert (code, "has no robot toy" in told) == (2, True)
 
 
-def test_a_test_that_is_none_is_refused(made, capsys):
-    """Tests are data: what is no test of the campaign is not played."""
+def test_an_invalid_test_is_refused(made, capsys):
+    """Tests are data: entries that are not valid tests of the campaign are not played."""
     kept = made(1)
     entries = unpack("e.zip")
     with open("e.zip", "wb") as file:

@@ -1,4 +1,4 @@
-"""The example of a second robot, as a person runs it."""
+"""The example of a second robot, run from the command line."""
 
 import json
 import re
@@ -26,14 +26,14 @@ def run(*words, cwd, folder=EXAMPLE):
 
 @pytest.fixture(scope="module")
 def played(tmp_path_factory):
-    """A folder with a campaign's files in `out`, and what the command said."""
+    """A folder with a campaign's files in `out`, and the output of the command."""
     folder = tmp_path_factory.mktemp("example")
     words = ("run", "--tests", "20", "--jobs", "1", "--out", "out", "--junit", "junit.xml")
     return folder, run(*words, cwd=folder)
 
 
 def test_the_unmodified_robot_passes(played):
-    """Exit 0: the planted fault was found, as its test knows."""
+    """Exit code 0: the planted fault was found, as its test expects."""
     folder, done = played
     assert (done.returncode, done.stderr) == (0, "")
     assert "4 of 4 directed tests ended as they should" in done.stdout
@@ -42,7 +42,7 @@ def test_the_unmodified_robot_passes(played):
     assert [one["tests"] for one in strategies.values()] == [20, 20, 3]
     assert all(one["statements"]["percent"] == 100 for one in strategies.values())
     root = ET.parse(folder / "junit.xml").getroot()  # noqa: S314 - our own
-    assert len(list(root.iter("testcase"))) == 45  # the last: nothing unreachable is hit
+    assert len(list(root.iter("testcase"))) == 45  # the last one: no unreachable item is hit
     assert not list(root.iter("failure"))
 
 
@@ -85,7 +85,7 @@ def test_it_closes(tmp_path):
     assert (len(closing["argued"]), closing["open"], closing["wrong"]) == (10, [], [])
     page = (tmp_path / "out" / "report.html").read_text()
     assert '<th scope="row">wait → slow</th>' in page
-    assert "drive → wait" not in page  # it cannot be, and is no hole of the suite
+    assert "drive → wait" not in page  # it cannot be hit, so it is not a hole of the suite
 
 
 def test_it_is_small():

@@ -1,4 +1,4 @@
-"""Whatever a test does, it has a result, and the others go on."""
+"""Whatever a test does, it has a result, and the others are played."""
 
 import multiprocessing
 import os
@@ -36,8 +36,8 @@ GOOD = [(f"good-{number}", {"level": float(number)}) for number in range(8)]
 MIXED = [*GOOD[:3], *TESTS[:2], *GOOD[3:6], *TESTS[2:], *GOOD[6:]]
 
 
-def test_bad_tests_are_results_and_the_others_go_on(campaign, spec):
-    """Of a test without a result nothing is known; the number of processes changes nothing."""
+def test_bad_tests_have_results_and_the_others_are_played(campaign, spec):
+    """A test without a result counts nowhere; the number of processes changes nothing."""
     chosen = plan(campaign(*MIXED))
     results = execute(chosen, jobs=1)
     assert results.played == execute(chosen, jobs=3).played
@@ -94,8 +94,8 @@ def test_a_system_that_cannot_be_made_is_told(campaign, spec):
         (GOOD[0], cdv.Control("less", lambda _: 1 / 0), "`good-0`: its control cannot be made: Z"),
     ],
 )
-def test_a_test_that_cannot_be_played_is_told(campaign, test, control, told):
-    """It is a mistake of who made it, and no result."""
+def test_a_test_that_cannot_be_played_is_an_error(campaign, test, control, told):
+    """It is a mistake of its author, not a result."""
     with pytest.raises(cdv.TestError, match=told):
         execute(plan(campaign(test, control=control)), jobs=1)
 
@@ -120,8 +120,8 @@ def test_a_run_that_is_none_is_a_crash(campaign, spec, run, told):
     assert told in odd.error
 
 
-def test_what_a_system_prints_and_where_it_goes_concern_it_alone(campaign, spec, capfd):
-    """Its print is no result, which goes to standard output; the next test begins at home."""
+def test_output_and_working_directory_of_a_system_are_isolated(campaign, spec, capfd):
+    """Its output does not mix with results; the next test starts in the original directory."""
     home = os.getcwd()
 
     class Wanderer:

@@ -1,4 +1,4 @@
-"""A campaign passes if all went as expected, also failures that are known."""
+"""A campaign passes if everything is as expected, including known failures."""
 
 import xml.etree.ElementTree as ET
 from dataclasses import replace
@@ -69,8 +69,8 @@ def test_an_expected_failure_elsewhere_excuses_nothing(campaign):
     ]
 
 
-def test_an_expected_failure_that_no_test_could_show_or_that_is_seldom_need_not_show(campaign):
-    """A risk that remains excuses what fails, and is not wrong where nothing does."""
+def test_an_expected_failure_need_not_occur_if_it_is_rare_or_cannot_be_triggered(campaign):
+    """A residual risk excuses failures, and is no error without them."""
     known = cdv.ExpectedFailure("T1", "why", strategy="other")
     assert judged(campaign(LOW, expected_failures=[known])).wrong == []
     risk = cdv.ExpectedFailure("T1", "the motor is strong", seldom=True)
@@ -87,8 +87,8 @@ def test_strict_wants_all_decided(campaign):
     assert judged(campaign(LOW), strict=True).wrong == []
 
 
-def test_a_gate_says_what_a_strategy_need_not_bring(campaign):
-    """Each strategy is held against its own; without one, all have to be triggered."""
+def test_a_gate_excepts_what_a_strategy_need_not_reach(campaign):
+    """Each strategy has its own exceptions; without any, all requirements must be triggered."""
     flat = ("flat", {"level": 1.0})
     untriggered = "T2 is triggered (toy): none of 1 test passed or failed it"
     assert judged(campaign(flat), strict=True).wrong == [untriggered]
@@ -119,8 +119,8 @@ def test_a_gate_has_a_bar_of_coverage(campaign):
         assert [one.partition(":")[0] for one in told] == wrong
 
 
-def test_a_test_is_what_it_says(campaign):
-    """It reaches what it is made to, or is wrong; also where all verdicts are as it knows them."""
+def test_a_test_must_reach_what_it_declares(campaign):
+    """Otherwise it is an error, even if all its verdicts are as expected."""
     climbs_to_up = {"level": 3.0, "reaches": {"states": ["up"]}}
     lost = {**climbs_to_up, "expected": {"T1": "P"}, "reaches": {"states": ["up", "away"]}}
     found = judged(campaign(("up", climbs_to_up), ("away", lost)))
@@ -135,15 +135,15 @@ def test_what_is_called_unreachable_is_not_to_be_hit(campaign):
         assert found.checks == {"no test hits an item that is declared unreachable (toy)": wrong}
 
 
-def test_a_state_that_the_campaign_does_not_list_is_not_to_be_entered(campaign):
-    """A name that was misspelt would leave another state uncovered, and nobody told."""
+def test_a_state_that_the_campaign_does_not_list_must_not_be_entered(campaign):
+    """A misspelt name would silently leave another state uncovered."""
     wrong = "only states of the campaign are entered (toy): low enters `up`"
     for states, expected in ((("down", "upp"), [wrong]), (("down", "up"), []), ((), [])):
         assert judged(campaign(LOW, states=states)).wrong == expected
 
 
 def known(**what):
-    """A failure that is expected."""
+    """An expected failure."""
     return {"expected_failures": [cdv.ExpectedFailure(**{"requirement": "T1", **what}, reason="")]}
 
 
@@ -154,14 +154,14 @@ def known(**what):
         *({"gates": {"luck": cdv.Gate()}}, {"gates": {"": cdv.Gate(["T9"])}}),
     ],
 )
-def test_an_expected_failure_or_a_gate_of_what_there_is_not_is_told(campaign, options):
-    """A misspelt name would excuse or hold nothing, and nobody would know why."""
+def test_an_expected_failure_or_gate_with_an_unknown_name_is_an_error(campaign, options):
+    """A misspelt name would silently have no effect."""
     with pytest.raises(UnknownNameError, match="there are"):
         refuse_unknown(campaign(LOW, **options))
 
 
 def test_junit_has_a_case_per_test_and_per_expectation(campaign, golden):
-    """Failures, errors, known failures as skipped; a campaign that was cut short is an error."""
+    """Failures, errors, known failures as skipped; an incomplete campaign is an error."""
     known = [cdv.ExpectedFailure("T1", "too strong", test="high")]
     known += [cdv.ExpectedFailure("T2", "fixed since")]
     tests = (LOW, HIGH, ("higher", {"level": 7.0, "text": "far up"}), CRASH)

@@ -20,9 +20,9 @@ def here(tmp_path, monkeypatch):
 
 
 def test_a_test_that_hung_has_no_page(campaign, tmp_path, capsys):
-    """It could not be played again; the campaign's page says that it hung, and nothing else."""
+    """It cannot be replayed; the campaign's page says only that it hung."""
     tests = (("hangs", {"does": "hang"}), ("fine", {"level": 3.0}))
-    # The other test may take as long, be the machine as busy as it likes.
+    # The other test may take as long as it needs on a busy machine.
     assert main(campaign(*tests), ["run", "--timeout", "5", "--jobs", "1", "--out", "out"]) == 1
     assert "not as expected: hangs (toy): hung: it took more than 5 s" in capsys.readouterr().err
     out = tmp_path / "out"
@@ -34,7 +34,7 @@ def test_a_test_that_hung_has_no_page(campaign, tmp_path, capsys):
     assert load(out / "tests" / "hangs.json", campaign().test).does == "hang"
 
 
-def test_a_system_that_is_not_repeatable_is_told(campaign, tmp_path, spec, capsys):
+def test_a_system_that_is_not_repeatable_is_reported(campaign, tmp_path, spec, capsys):
     """Its pages would show other runs than its table counts."""
 
     class Moody:
@@ -102,8 +102,8 @@ def test_names_of_tests_do_not_steer_a_terminal(campaign, capsys):
     assert "[bold]not[/]" in told.err
 
 
-def test_the_texts_of_foremost_requirements_come_first(campaign, tmp_path, spec):
-    """Those of others are folded up; where none is foremost, all are there at once."""
+def test_the_texts_of_the_main_requirements_come_first(campaign, tmp_path, spec):
+    """Those of others are folded; without main requirements all are open."""
     spec.write_text(f'{spec.read_text()}requirement Far "Up high"\n  always level < 50\n')
     made = campaign(("low", {"level": 3.0}))
     heads = []
@@ -121,7 +121,7 @@ def test_the_texts_of_foremost_requirements_come_first(campaign, tmp_path, spec)
 
 
 def test_a_requirement_that_no_test_triggers_is_pointed_out(campaign, tmp_path, spec, capsys):
-    """The page leads to a run that says what its trigger lacked; others are not named there."""
+    """The page links to a run that shows what its trigger lacked; others are not named there."""
     spec.write_text(
         f'{spec.read_text()}requirement Far "Up high"\n  upon level >= 50\n  then within 1 s over\n'
     )

@@ -1,4 +1,4 @@
-"""A campaign decides whether a requirement holds in a share of runs."""
+"""A campaign decides whether a requirement holds in a given share of runs."""
 
 import json
 import random
@@ -32,8 +32,8 @@ LEAST = RunShare(at_least=True, percent=95.0)
         (LEAST, [I] + [F] * 9, False, 4),
     ],
 )
-def test_a_share_is_decided_by_as_few_tests_as_it_takes(share, verdicts, holds, tests):
-    """What was not triggered does not count; what is inconclusive counts against each decision."""
+def test_a_share_is_decided_with_as_few_tests_as_possible(share, verdicts, holds, tests):
+    """Runs without a trigger do not count; inconclusive ones count against either decision."""
     found = decide(share, verdicts)
     assert (found.holds, found.tests) == (holds, tests)
 
@@ -41,7 +41,7 @@ def test_a_share_is_decided_by_as_few_tests_as_it_takes(share, verdicts, holds, 
 @pytest.mark.slow
 @pytest.mark.parametrize("share", [LEAST, MOST, RunShare(at_least=True, percent=50.0)])
 def test_errors_are_as_stated(share):
-    """At both ends of the indifference, of 1,500 campaigns with some inconclusive tests."""
+    """At both ends of the indifference region, over 1,500 campaigns with inconclusive tests."""
     rng = random.Random(1)
     low, high = decide(share, []).indifference
     good, bad = (high, low) if share.at_least else (low, high)
@@ -90,7 +90,7 @@ def test_what_is_decided_is_said_with_its_errors():
 def test_a_campaign_is_judged_by_its_shares(
     campaign, spec, tmp_path, capsys, share, failing, tests, strict, code, told
 ):
-    """A single failure is none; the decision is in tables, in JUnit, and decides the exit code."""
+    """One failure is not enough; the decision is in tables and JUnit, and sets the exit code."""
     clause = f"always level < 5\n  in {share} % of runs"
     spec.write_text(spec.read_text().replace("always level < 5", clause).replace("> 2", ">= 0"))
     made = campaign(*((f"t{n}", {"level": 6.0 if n < failing else 0.5}) for n in range(tests)))

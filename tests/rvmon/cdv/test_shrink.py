@@ -1,4 +1,4 @@
-"""A failing test becomes the smallest one that fails alike, and a regression test."""
+"""A failing test becomes the smallest one with the same failure, and a regression test."""
 
 import importlib
 import json
@@ -22,7 +22,7 @@ from rvmon.verdicts import Verdict
 
 
 class Steps(cdv.Test):
-    """Numbers, and how big they are at most."""
+    """Numbers, and their limit."""
 
     removable: ClassVar = ("numbers", "words")
     numbers: tuple[int, ...] = ()
@@ -45,7 +45,7 @@ def outcome(*, ending=Ending.COMPLETED, error=None, **verdicts):
 
 
 def fails_if(condition):
-    """Plays: R1 fails where the condition holds."""
+    """Plays a test: R1 fails if the condition holds."""
     return lambda test: outcome(R1="F" if condition(test) else "P", R2="F")
 
 
@@ -62,8 +62,8 @@ def fails_if(condition):
          (0, 4)),
     ],
 )  # fmt: skip
-def test_no_single_removal_or_simplification_fails_alike(condition, smallest):
-    """The failure that was looked for is kept, whatever else fails, and nothing is left to take.
+def test_no_further_removal_or_simplification_fails_alike(condition, smallest):
+    """The requested failure is kept, whatever else fails, and nothing more can be removed.
 
     No test is played twice.
     """
@@ -89,8 +89,8 @@ def test_no_single_removal_or_simplification_fails_alike(condition, smallest):
 OUTCOME = outcome(R1="F", R2="F")
 
 
-def test_a_run_that_does_not_complete_is_shrunk_to_one_that_ends_alike():
-    """Another exception is another failure; a requirement that is asked for counts instead."""
+def test_an_incomplete_run_is_shrunk_to_one_that_ends_alike():
+    """Another exception is another failure; a requested requirement takes precedence."""
 
     def play(test):
         error = "ZeroDivisionError: 1" if 4 in test.numbers else "KeyError: 2"
@@ -141,8 +141,8 @@ def test_a_search_that_is_ended_keeps_what_it_found(ended):
     assert len(found.test.numbers) < 10
 
 
-def test_a_field_that_does_not_exist_is_told():
-    """It would shrink nothing, and nobody would know why."""
+def test_a_field_that_does_not_exist_is_an_error():
+    """It would silently shrink nothing."""
 
     class Wrong(cdv.Test):
         removable: ClassVar = ("nmubers",)
@@ -159,8 +159,8 @@ def test_a_field_that_does_not_exist_is_told():
         ({"expected": {"R1": "F"}}, {"R1": "F"}),
     ],
 )
-def test_a_regression_test_knows_what_is_to_come_out(campaign, tmp_path, more, expected):
-    """A pass once the robot is fixed; a failure where it finds a fault. It is read back."""
+def test_a_regression_test_has_the_expected_verdicts(campaign, tmp_path, more, expected):
+    """Passed once the robot is fixed; failed if it finds a planted fault. It is read back."""
     test = steps(1, 2, **more)
     found = shrink(test, OUTCOME, fails_if(lambda one: 2 in one.numbers))
     made = campaign()
@@ -183,7 +183,7 @@ def test_what_ends_its_process_is_shrunk_in_others(campaign, tmp_path, capsys):
 
 
 class Stuck:
-    """Waits for ever for a level that is not there, and shows the others."""
+    """Waits for ever for a missing level, and shows the others."""
 
     def play(self, test, observer):
         if 4 not in test.numbers:
@@ -197,7 +197,7 @@ class Stuck:
 
 @pytest.mark.process
 def test_a_smaller_test_that_hangs_is_ended(spec, tmp_path, capsys):
-    """It fails otherwise; so does one that cannot be played. What is left does neither."""
+    """It fails differently, like one that cannot be played. The result does neither."""
     made = cdv.Campaign("stuck", Steps, {}, {"stuck": cdv.Robot(Stuck, spec)})
     path = save(steps(2, 6, 4), tmp_path)
     assert main(made, ["shrink", str(path), "--timeout", "2.5"]) == 0

@@ -1,4 +1,4 @@
-"""Blocks of code, and which of their statements and branches ran."""
+"""Blocks of code, and their executed statements and branches."""
 
 import importlib.util
 import xml.etree.ElementTree as ET
@@ -84,8 +84,8 @@ def _job(campaign):
     return plan(campaign).jobs()[0]
 
 
-def test_blocks_of_one_name_are_told(code):
-    """Their hits could not be told apart."""
+def test_blocks_with_the_same_name_are_refused(code):
+    """Their hits could not be distinguished."""
     with pytest.raises(RvmonError, match=r"two blocks are called `Toy.climb`, in .*toy.py"):
         cdv.Code((*cdv.blocks_of(code), *cdv.blocks_of(code)))
 
@@ -130,14 +130,14 @@ end_of_record
 
 @pytest.fixture
 def measured(code, monkeypatch):
-    """The blocks of a file, and what there is to be covered of them."""
+    """The blocks of a file and their items of coverage."""
     monkeypatch.chdir(code.parent)
     blocks = cdv.Code(cdv.blocks_of(code))
     return blocks, model_of(code_groups(blocks))
 
 
 def test_lcov(measured, code):
-    """Lines with the number of tests; a way not gone is 0, `-` of a line that never ran."""
+    """Lines with the number of tests; a branch not taken is 0, or `-` if its line never ran."""
     blocks, model = measured
     assert lcov(blocks, model, HITS) == LCOV.format(path=code.name)
     assert "BRDA:4,0,0,-" in lcov(blocks, model, {})

@@ -62,7 +62,7 @@ class Dials(cdv.Test):
 
 
 class Machine:
-    """Shows what its dials say."""
+    """Shows the values of its dials."""
 
     def play(self, test, observer):
         if test.does == "kill":
@@ -81,7 +81,7 @@ def still(count, seed):
 
 @pytest.fixture
 def dials(tmp_path):
-    """Makes a campaign that closes its holes in some way."""
+    """Makes a campaign with options for closing its holes."""
     path = tmp_path / "dials.rv"
     path.write_text(SPEC)
 
@@ -106,7 +106,7 @@ def test_tests_are_changed_until_all_is_covered(dials):
 
 
 def test_the_suite_keeps_a_margin(dials):
-    """Each goal is shown by two of its tests, where two were found; what fewer would do is told."""
+    """Each goal is hit by two tests if two were found; the size without a margin is reported."""
     closed = close(dials(), "machine", jobs=1, margin=2)
     assert [*closed.sizes] == [1, 2]
     assert closed.sizes[1] == 9 < closed.sizes[2] == closed.needed == len(closed.suite)
@@ -129,8 +129,8 @@ def test_the_seed_decides_whatever_the_number_of_processes(dials):
     assert did[0] == did[1] != did[2]
 
 
-def test_a_budget_ends_it_and_a_line_is_printed_that_calls_the_rest_unreachable(dials, capsys):
-    """The line, with a reason, is taken as it stands."""
+def test_at_the_end_of_the_budget_a_line_to_declare_the_rest_unreachable_is_printed(dials, capsys):
+    """The printed line, completed with a reason, can be used as it is."""
     closed = close(dials(), "machine", jobs=1, budget=Budget(tests=3))
     assert len(closed.tests) == 3
     assert closed.ended == "after 3 tests"
@@ -155,8 +155,8 @@ def test_tests_that_end_their_process_do_not_end_the_search(dials):
     assert closed.needed == 9
 
 
-def test_what_is_called_unreachable_is_not_sought_and_must_not_be_met(dials):
-    """It is no goal; a test that meets it all the same is an error, told with its name."""
+def test_unreachable_items_are_not_goals_and_must_not_be_hit(dials):
+    """A test that hits one is an error, which names the test."""
     out = Unreachable("both", "two × two", "the dials touch each other")
     closed = close(dials(unreachable=[out]), "machine", jobs=1)
     assert closed.goals == 14
@@ -178,8 +178,8 @@ def test_unknown_items_are_refused(dials):
         assert fix in str(caught.value)
 
 
-def test_lines_go_by_their_text(dials, code):
-    """The statement of a line and the branches to it; a block or one branch can be named."""
+def test_lines_are_named_by_their_text(dials, code):
+    """A line is its statement and the branches to it; a block or a single branch can be named."""
     campaign = replace(dials(), code=cdv.Code(cdv.blocks_of(code)))
     unreachable = [
         Unreachable("", "return self.high()", "too high"),
@@ -197,7 +197,7 @@ def test_lines_go_by_their_text(dials, code):
 
 
 def model(query=lambda *_: "", **more):
-    """The model of the dials, with tests made of its runs."""
+    """The model of the dials, with tests from its runs."""
 
     def make(template, seed):
         did = {step.action for step in template.steps}
@@ -242,8 +242,8 @@ def test_runs_of_the_model_become_tests_and_its_answers_proofs(dials):
 
 
 @pytest.mark.parametrize(("query", "closed_by"), [("E<> left == 3", "proved"), ("", "open")])
-def test_what_the_model_is_to_prove_is_open_without_the_proof(dials, query, closed_by):
-    """A campaign that is only played takes the proof as given; `close` asks for it."""
+def test_an_unproved_item_is_open(dials, query, closed_by):
+    """Playing a campaign assumes the proof; `close` demands it."""
     goal = ("both", "one × two")
     campaign = dials(model=model(lambda *names: query if names == goal else ""))
     given = Unreachable(*goal, "the model proves it", by_model=True)
@@ -273,8 +273,8 @@ def test_edges_are_shown_only_by_tests_that_go_their_way(dials):
         (("person", "choosing", "done"), "several edges .* name each: .*''.*, 'quit'"),
     ],
 )
-def test_what_a_test_does_is_for_one_edge(dials, edge, wrong):
-    """Edges between the same locations go by label or channel; a name that fits none is told."""
+def test_actions_of_tests_are_assigned_to_edges(dials, edge, wrong):
+    """Edges between the same locations are named by label or channel; unknown names are errors."""
     text = MODEL.replace("choosing -> done", "choosing -> done\n  edge choosing -> done as quit")
 
     def tests(actions):
@@ -329,8 +329,8 @@ def test_nonsense_of_a_campaign_is_told(dials):
         close(dials(model=model(lambda *_: "E<> nothing")), "machine", jobs=1)
 
 
-def test_a_type_that_takes_no_closed_test_is_told(dials):
-    """Tests say that they were made to close holes: their type has to let them."""
+def test_a_test_type_without_room_for_closing_is_refused(dials):
+    """Generated tests record that they close holes, so their type needs the field."""
 
     class Strict(cdv.Test):
         strategy: Literal["still"]

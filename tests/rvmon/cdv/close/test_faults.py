@@ -1,4 +1,4 @@
-"""Suites that are chosen by the mutants that they kill, too."""
+"""Suites that are also chosen by the mutants they kill."""
 
 import importlib.util
 from typing import Annotated
@@ -30,7 +30,7 @@ cover never = level == 100
 
 
 class Wanted(cdv.Test):
-    """What the machine is asked for."""
+    """The level requested of the machine."""
 
     wanted: Annotated[int, msgspec.Meta(ge=0, le=20)] = 0
 
@@ -49,12 +49,12 @@ class Machine:
 
 
 def asked(count, seed):
-    """A strategy that asks for 0."""
+    """A strategy that requests 0."""
     return [Wanted(name="asked", strategy="asked", seed=1)]
 
 
 def campaign_of(path, code):
-    """A campaign against code that limits a level; what it covers says nothing of the limit."""
+    """A campaign against code that limits a level; its coverage does not depend on the limit."""
     path.write_text(code)
     spec = path.with_name("limited.rv")
     spec.write_text(SPEC)
@@ -73,8 +73,8 @@ def limited(tmp_path):
 
 
 @pytest.mark.slow
-def test_what_the_suite_lets_live_is_killed_by_tests_that_are_added(limited):
-    """Each choice of tests kills at least as much as a smaller one, and what is held out counts."""
+def test_added_tests_kill_surviving_mutants(limited):
+    """Each suite kills at least as much as a smaller one, and held-out mutants count."""
     closed = close(limited, "machine", jobs=1, budget=Budget(tests=40))
     found = with_mutants(limited, "machine", closed, 100, jobs=1)
     trade = found.trade

@@ -1,4 +1,4 @@
-"""Tests that are changed by the types of their fields."""
+"""Tests are varied according to the types of their fields."""
 
 import enum
 import random
@@ -24,13 +24,13 @@ class Step(msgspec.Struct, tag="step", frozen=True):
 
 
 class Turn(msgspec.Struct, tag="turn", frozen=True):
-    """A turn, which takes no other angle."""
+    """A turn with a fixed angle."""
 
     angle: Literal[90, 180]
 
 
 class Tree(msgspec.Struct, frozen=True):
-    """Part of itself."""
+    """A recursive type."""
 
     size: int = 0
     parts: tuple["Tree", ...] = ()
@@ -59,7 +59,7 @@ class Odd(cdv.Test):
 
 
 def changed(tests, count, *, fixed=()):
-    """So many tests, each changed from one of the last."""
+    """A number of tests, each a variation of an earlier one."""
     rng, learned = random.Random(1), Learned()
     mutator = Mutator(Odd, fixed, learned)
     for _ in range(count):
@@ -82,8 +82,8 @@ def test_whatever_is_changed_is_a_test_of_its_type():
 
 
 @pytest.mark.slow
-def test_what_a_test_says_of_itself_and_fixed_fields_stay():
-    """Name, purpose, robot, fault, known answers, and what has no neighbours, such as texts."""
+def test_descriptions_and_fixed_fields_are_kept():
+    """Name, purpose, robot, fault, known answers, and values without neighbours, such as texts."""
     first = Odd(name="a", strategy="s", seed=1, text="t", mutation="m", expected={"R": "F"})
     tests = changed([first], 300, fixed=("seed", "tree.size"))
     for one in tests:

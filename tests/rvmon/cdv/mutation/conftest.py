@@ -1,4 +1,4 @@
-"""A lift whose code is a file, so that it can be mutated, and tests of it."""
+"""A lift with its code in a file, so that it can be mutated, and tests of it."""
 
 import importlib.util
 import sys
@@ -56,7 +56,7 @@ class Ride(cdv.Test):
 
 
 class System:
-    """Plays a ride: what the lift tells comes a second apart."""
+    """Plays a ride: the lift's reports are a second apart."""
 
     def __init__(self, path):
         self.path = path
@@ -70,7 +70,7 @@ class System:
 
 
 def lift_of(path):
-    """The lift's module, loaded when it is asked for first."""
+    """The lift's module, loaded on first use."""
     name = f"lift_at_{abs(hash(str(path)))}"
     if name not in sys.modules:
         found = importlib.util.spec_from_file_location(name, path)
@@ -105,7 +105,7 @@ def campaign(tmp_path):
 
 @pytest.fixture
 def tried(campaign):
-    """Plays mutants: by default all of the campaign, in one process, by the first test."""
+    """Plays mutants: by default all of the campaign, in one process, with the first test."""
 
     def made(mutants=None, *, tests=1, jobs=1, **options):
         suite = record_suite(campaign, "lift", rides(tests, 1), jobs=1)
@@ -117,7 +117,7 @@ def tried(campaign):
 
 @pytest.fixture
 def changed(campaign):
-    """Makes a mutant by hand: of a function, or constant, a text for another."""
+    """Makes a mutant by hand: replaces a text in a function or constant."""
     path = Path(next(iter(campaign.code.constants)))
 
     def made(function, before, after):

@@ -22,7 +22,7 @@ pytestmark = [
 
 
 def equivalent(campaign, folder, part):
-    """The campaign, in which mutants with this in their name are said to be equivalent."""
+    """The campaign; mutants with this text in their name are declared equivalent."""
     path = folder / "equivalent.toml"
     lines = [
         f"{json.dumps(one.identity)} = {json.dumps(one.brief)}"
@@ -93,10 +93,10 @@ def test_mutants_are_listed_without_those_held_out(campaign, capsys):
     assert not re.search("^held out", told, re.MULTILINE)
 
 
-def test_what_is_said_to_be_equivalent_leaves_the_score_and_fails_if_it_is_killed(
+def test_a_mutant_declared_equivalent_does_not_count_and_must_not_be_killed(
     campaign, tmp_path, capsys
 ):
-    """With --strict, all else has to be killed."""
+    """With --strict, all others have to be killed."""
     known = equivalent(campaign, tmp_path, "Lift.note")
     command = ["mutate", "--of", "code", "--only", "note", "--jobs", "1", "--strict"]
     assert main(campaign, command) == 1

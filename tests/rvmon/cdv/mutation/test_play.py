@@ -1,4 +1,4 @@
-"""What becomes of mutants: killed and by what, or alive, and nothing of it stays."""
+"""Mutants are killed, with the reason, or survive, and leave nothing behind."""
 
 import multiprocessing
 import time
@@ -32,10 +32,10 @@ DOOR = 'told.append(("door", True))'
 TOLD = 'told.append(("floor", floor))'
 
 
-def test_a_requirement_that_fails_kills_and_ends_the_play_unless_all_tests_are_asked_for(
+def test_a_failed_requirement_kills_and_ends_the_play_unless_all_tests_are_requested(
     tried, changed
 ):
-    """One whose requirement fails anyway does not kill."""
+    """A requirement that fails without the mutant does not kill it."""
     mutant = changed("Lift.ride", DOOR, "pass")
     (one,) = tried([mutant], tests=3)
     assert one.killed_by_requirement
@@ -64,16 +64,16 @@ def test_a_known_answer_kills_where_no_requirement_fails(tried, changed):
         ("import os; os.kill(os.getpid(), 9)", How.LOST),
     ],
 )
-def test_what_a_mutant_does_is_its_result(tried, changed, line, how):
-    """One that raises, computes for ever, eats memory or ends its process harms nobody."""
+def test_misbehaviour_of_mutants_is_a_result(tried, changed, line, how):
+    """A mutant that raises, loops, exhausts memory or exits harms nothing else."""
     fine = changed("Lift.ride", DOOR, "pass")
     one, other = tried([changed("Lift.ride", "self.note(to)", line), fine])
     assert [found.how for found in one.findings] == [how]
     assert other.killed_by_requirement
 
 
-def test_what_waits_long_does_not_hang(campaign, changed, monkeypatch):
-    """As beside a simulator, or on a machine with much else to do: its tests may take as long."""
+def test_long_waits_are_not_hangs(campaign, changed, monkeypatch):
+    """As with a simulator or on a busy machine: tests may wait as long as they need."""
 
     class Waits(System):
         def play(self, test, observer):
@@ -118,15 +118,15 @@ def test_a_constant_is_changed_with_what_is_made_of_it(tried, changed):
     assert floors.difference.name == "floor"
 
 
-def test_what_cannot_be_planted_counts_nowhere(tried, changed):
-    """A function that needs another closure is not the same with other code."""
+def test_mutants_that_cannot_be_planted_do_not_count(tried, changed):
+    """The code of a function cannot be replaced if the closure differs."""
     (one,) = tried([changed("Lift.note", "self.noted = to", "super().__init__()")])
     assert "cannot be changed" in one.invalid
     assert scored([one]).mutants == 0
 
 
 def ride_later(source):
-    """Plants what it is given, and only then loads the lift."""
+    """Plants the mutant and only then loads the lift."""
 
     def ride(mutant):
         plant(mutant, source)
@@ -135,8 +135,8 @@ def ride_later(source):
     return ride
 
 
-def test_a_file_that_is_loaded_later_is_loaded_with_the_change(changed):
-    """As of a system that imports what it plays when it plays."""
+def test_a_module_loaded_later_has_the_mutant(changed):
+    """As in a system that imports its code when it plays."""
     mutant = changed("Lift.ride", DOOR, "pass")
     source = mutant.path.read_text()
     (told,) = parallel.execute(
@@ -146,7 +146,7 @@ def test_a_file_that_is_loaded_later_is_loaded_with_the_change(changed):
 
 
 def test_runs_of_faulty_code_judge_requirements(campaign, tried, changed):
-    """They tell bounds apart that the code as it is never comes near; none is held out."""
+    """They distinguish bounds that the unchanged code never comes near; none is held out."""
     mutants = [
         replace(changed("Lift.ride", TOLD, f"{TOLD}; {TOLD}"), ordinal=number)
         for number in range(9)

@@ -1,4 +1,4 @@
-"""What a person reads of mutants: scores, questions, equivalents; and what is held out."""
+"""The report of mutants: scores, questions, equivalent and held-out mutants."""
 
 from pathlib import Path
 
@@ -35,7 +35,7 @@ def report(*tried, equivalent=(), shows=False):
 
 
 def as_text(found, **how):
-    """What the terminal shows, without colour."""
+    """The report on a terminal without colours."""
     return text_of(lambda printer: print_mutation(found, printer, **how))
 
 
@@ -89,8 +89,8 @@ def test_what_kills_stands_beside_each_mutant():
     assert "requirement (R1) in t" in mutation_page(found)
 
 
-def test_an_equivalent_mutant_that_is_killed_or_makes_a_run_differ_is_a_contradiction():
-    """And counts in the score; one that survives is no survivor, and leaves the score."""
+def test_an_equivalent_mutant_that_is_killed_or_changes_a_run_is_a_contradiction():
+    """It counts in the score; one that survives does not."""
     found = report(Tried(SHOWN[0], 1, 1), Tried(SHOWN[1], 1, 1, (KILLED,)), equivalent=SHOWN[:2])
     assert found.survivors("s") == {}
     assert found.contradictions() == [

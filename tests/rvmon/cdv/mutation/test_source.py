@@ -1,4 +1,4 @@
-"""Mutants of Python code: which there are, what they are called, and which third they are in."""
+"""Mutants of Python code: their kinds, their names, and the third they belong to."""
 
 import ast
 import inspect
@@ -63,14 +63,14 @@ def test_every_operator_is_tried():
 @pytest.mark.parametrize(
     ("body", "kept"),
     [
-        ("a = 1\n    return a", "a = 1"),  # else its name has no value
-        ("yield a", "yield a"),  # else it is no generator
+        ("a = 1\n    return a", "a = 1"),  # otherwise its name has no value
+        ("yield a", "yield a"),  # otherwise it is not a generator
         ("for c in a: yield c", "for c in a"),
         ("'what it is for'\n    a.start()", "'what it is for'"),
     ],
 )
-def test_what_could_only_crash_is_not_dropped(tmp_path, body, kept):
-    """Such mutants would say nothing about a suite."""
+def test_statements_whose_removal_only_crashes_are_kept(tmp_path, body, kept):
+    """Such mutants are killed by any suite."""
     path = tmp_path / "m.py"
     path.write_text(f"def f(a, b):\n    {body}\n")
     gone = [one for one in mutants(path, range(2, 9)) if kept not in one.source]

@@ -1,4 +1,4 @@
-"""Mutants of requirements: text of the language, judged on runs, or proved equivalent."""
+"""Mutants of requirements: specification texts that are evaluated on runs or proved equivalent."""
 
 import inspect
 import re
@@ -48,8 +48,8 @@ def test_every_operator_is_tried():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("path", ["specs/handover.rv", "specs/handover_legacy.rv"])
-def test_what_is_printed_is_the_mutant(path):
-    """Read again, the text of each is the formulas that are judged."""
+def test_the_printed_mutant_is_the_one_evaluated(path):
+    """When parsed, its text gives the formulas that are evaluated."""
     spec = load(path)
     text = spec.checked.source.text
     declared = text[: text.index("requirement ")]
@@ -62,7 +62,7 @@ def test_what_is_printed_is_the_mutant(path):
 
 
 def tried(requirement, *samples, end_s=9):
-    """What one recorded run says of all mutants, by their text."""
+    """The result of one recorded run for all mutants, by their text."""
     spec = spec_of(requirement)
     monitor = spec.monitor()
     for t_ns, values in samples:
@@ -84,8 +84,8 @@ def test_a_run_with_another_verdict_kills():
 
 
 @pytest.mark.slow
-def test_what_is_equivalent_is_proved():
-    """In bounded time only: what is open for ever neither fails nor is met."""
+def test_equivalent_mutants_are_proved():
+    """Only with bounds: an attempt that stays open neither fails nor passes."""
     found = tried("upon go then within 3 s (stop or stop and p)")
     assert found["upon go then within 3 s stop"].proved
     assert not found["upon go then within 4 s (stop or stop and p)"].proved
