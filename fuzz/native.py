@@ -19,7 +19,7 @@ from pathlib import Path
 
 from fuzz.sanitize import guarded_memory
 from fuzz.targets import seeds
-from tests.rvmon.core.put_away import HEAD, tell
+from tests.rvmon.core.twins import HEAD, tell
 from tests.rvmon.models.search.plans import search_plans
 from tests.tools.drive import told
 from tests.tools.random_specs import truths_plan, with_random_coverage

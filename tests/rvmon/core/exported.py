@@ -1,4 +1,4 @@
-"""Cases for the exported C: what `judge.c` reads, what it prints, and what the extension says."""
+"""Runs cases with the exported C (`judge.c`) and with the extension, printed in one format."""
 
 import struct
 import subprocess
@@ -26,13 +26,13 @@ _UNKNOWN, _WHOLE, _REAL = range(3)
 
 
 class Exported:
-    """Cases of which each has its plan in one program.
+    """A program of exported C that holds the plan of each case.
 
     Args:
-        folder: where it is made.
-        cases: the cases; specifications that the core judges.
-        command: the compiler with its options.
-        core: the core as an object that is made by them.
+        folder: where the program is built.
+        cases: their specifications are ones that the core can judge.
+        command: the compiler and its options.
+        core: object file of the core, compiled by the same command.
     """
 
     def __init__(
@@ -55,24 +55,25 @@ class Exported:
         self.compile(command, core)
 
     def compile(self, command: Sequence[str], core: Path) -> None:
-        """Compile the program, by a compiler with its options, with the core as they make it."""
+        """Compile the driver and the plans, and link them with an object file of the core."""
         line = [*command, "-I.", str(DRIVER), str(core), "-o", self._program.name, "-lm"]
         subprocess.run(line, cwd=self._program.parent, check=True)  # noqa: S603
 
     def judge(
         self, runs: Sequence[tuple[int, int]], reserved: int = 0, *, notes: bool = False
     ) -> list[list[str]]:
-        """What is printed of each case, which is run twice, by one monitor.
+        """Lines printed for each run: one monitor judges the case, is reset, and judges it again.
 
         Args:
-            runs: the number of a case, and the size of its block, or `HEAP`.
-            reserved: for so many open attempts room is made at once.
-            notes: whether notes are kept, and read.
+            runs: number of a case, and size of the memory block; `HEAP` for a heap, `HEAP - 1 - n`
+                for a heap that grants n allocations.
+            reserved: number of open attempts to reserve memory for.
+            notes: whether notes are kept and read.
         """
         lines = (line for run in runs for line in self._lines(*run, reserved, notes=notes))
-        told = "\n".join(lines) + "\n"
+        script = "\n".join(lines) + "\n"
         done = subprocess.run(  # noqa: S603
-            [self._program], input=told, check=True, stdout=subprocess.PIPE, text=True
+            [self._program], input=script, check=True, stdout=subprocess.PIPE, text=True
         )
         *found, rest = done.stdout.split(".\n")
         assert not rest
@@ -102,7 +103,7 @@ class Exported:
         yield f"e {_NO_TIME if case.end is None else case.end}"
 
     def records_of_extension(self, number: int) -> list[str]:
-        """What the extension says of a case, as `judge.c` prints it."""
+        """The extension's records of a case, formatted as `judge.c` prints them."""
         case, planned = self.cases[number], self.planned[number]
         names = frozenset(planned.numbers)
         monitor = planned.monitor(names - (names if case.names is None else case.names))
@@ -119,7 +120,7 @@ class Exported:
 
 
 def core_in(command: Sequence[str], folder: Path) -> None:
-    """Compile the core into `rvmon_core.o` of a folder, by a compiler with its options."""
+    """Compile the core to `rvmon_core.o` in a folder."""
     for name, text in core_files().items():
         (folder / name).write_text(text, encoding="utf-8")
     line = [*command, "-c", "rvmon_core.c", "-o", "rvmon_core.o"]
@@ -127,7 +128,7 @@ def core_in(command: Sequence[str], folder: Path) -> None:
 
 
 def _plans(names: Sequence[str]) -> str:
-    """A header with all plans in it."""
+    """A header that includes all plans and lists them in a table."""
     includes = [f'#include "{name}_plan.c"' for name in names]
     rows = [f"    {{{name}_plan, sizeof {name}_plan}}," for name in names]
     table = ["static const struct { const uint64_t *bytes; size_t size; } plans[] = {", *rows, "};"]
@@ -152,7 +153,7 @@ Update = tuple[int, int, tuple[int, int], list[tuple[int, int]]]
 
 
 def updates_of(planned: PlannedCore, name: str, value: Value) -> Iterator[Update]:
-    """The updates that give a value, as the core takes them; several payloads are as many."""
+    """The updates for a value in the form of the core, one for each payload."""
     number, packed = planned.numbers[name], planned.packed
     if name in packed.signals:
         known = _number(value, packed.signals[name], packed.labels)

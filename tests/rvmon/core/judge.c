@@ -1,6 +1,7 @@
-/* Judges what stands on the standard input, by the exported core and plans; see exported.py.
+/* Runs the commands on the standard input with the exported core and plans; see exported.py.
  *
- * What a call is given lies in memory of its own, so that a core that keeps a pointer to it is seen. */
+ * Arguments of calls are copied and freed after the call, so that a sanitizer sees a core that keeps a
+ * pointer to them. */
 #include "plans.h"
 
 #include <inttypes.h>
@@ -10,7 +11,7 @@
 
 #define MOST 256
 
-/* Allocations that a limited heap still grants; negative: all. */
+/* Allocations that a limited heap still grants; negative: no limit. */
 static int64_t left = -1;
 
 static void *resize(void *block, size_t size)
@@ -43,7 +44,7 @@ static rv_number read_number(void)
     return made;
 }
 
-/* Read all words of a note, and all letters that it refers to. */
+/* Read all words of a note and all letters it refers to, for the sanitizer. */
 static void read_note(const rv_monitor *m, const rv_record *record)
 {
     rv_note note;
@@ -110,7 +111,7 @@ int main(void)
     bool noting = false;
     while (scanf(" %c %" SCNd64, &what, &t) == 2) {
         int code = RV_OK;
-        if (what == 'c') { /* a plan, and the size of a block; -1: a heap; -2 - n: n allocations of it */
+        if (what == 'c') { /* plan and size of the block; -1: heap; -2 - n: heap of n allocations */
             rv_memory memory = {allocate, resize, free, NULL, 0};
             int64_t size;
             if (scanf("%" SCNd64, &size) != 1) {
@@ -126,7 +127,7 @@ int main(void)
             m = rv_new(plans[t].bytes, plans[t].size, memory);
             printf("%s\n", (m == NULL) ? "none" : "begun");
         } else if (m == NULL) {
-            /* It has not begun: the rest of the case is read over. */
+            /* No monitor: skip the rest of the case. */
             int32_t says;
             if (((what == 'u') && (scanf("%" SCNd32, &says) == 1)) || (what == 'f')) {
                 (void)read_number();
@@ -149,7 +150,7 @@ int main(void)
                 return 2;
             }
             one->value = read_number();
-        } else if (what == 'f') { /* a field of that update: its place, its value */
+        } else if (what == 'f') { /* a field of the last update: place and value */
             fields[fields_count] = read_number();
             if (t == 0) {
                 updates[count - 1].fields = &fields[fields_count];
@@ -192,7 +193,7 @@ int main(void)
             tell(m);
             rv_forget_records(m);
         }
-        if ((m != NULL) && (what == 'e')) { /* whether memory was short, verdicts, bytes */
+        if ((m != NULL) && (what == 'e')) { /* whether memory ran out, verdicts, bytes used */
             int32_t i;
             printf("e %d", rv_spoilt(m) ? 1 : 0);
             for (i = 0; i < rv_sizes_of(m).requirements; i++) {

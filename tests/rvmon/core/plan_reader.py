@@ -1,4 +1,4 @@
-"""Reads the bytes of a plan by what plan.h declares."""
+"""Decodes the bytes of a plan with the layouts declared in plan.h."""
 
 import re
 import struct
@@ -30,13 +30,13 @@ def _text() -> str:
 
 @cache
 def record_types() -> Mapping[str, str]:
-    """By name of a section, in order, what type of C its records have."""
+    """C type of the records of each section, in the order of the sections."""
     return dict(_SECTION.findall(_text()))
 
 
 @cache
 def enumerators() -> Mapping[str, int]:
-    """The names that plan.h enumerates."""
+    """Values of all enumerators in plan.h, and of the sections."""
     found = {f"SEC_{name}": number for number, name in enumerate(record_types())}
     for body in _ENUM.findall(_text()):
         value = 0
@@ -50,7 +50,7 @@ def enumerators() -> Mapping[str, int]:
 
 @cache
 def layouts() -> Mapping[str, tuple[tuple[str, str], ...]]:
-    """By type of C, its fields with their formats for `struct`, lists as two numbers."""
+    """Fields of each C type with their `struct` formats; a list is two numbers."""
     found: dict[str, tuple[tuple[str, str], ...]] = {}
     for body, name in _STRUCT.findall(_text()):
         fields = []
@@ -65,7 +65,7 @@ def layouts() -> Mapping[str, tuple[tuple[str, str], ...]]:
 
 
 def record(name: str, data: bytes, offset: int) -> dict[str, Any]:
-    """The fields of a record, lists and arrays as tuples."""
+    """The fields of a record; lists and arrays become tuples."""
     made = {}
     for own, form in layouts()[name]:
         values = struct.unpack_from(f"={form}", data, offset)
@@ -79,14 +79,14 @@ def size_of_form(form: str) -> int:
 
 
 def size_of(name: str) -> int:
-    """The bytes of a type of C: of a record, or of a number."""
+    """Size in bytes of a C type: a record or a number."""
     if name in _LETTERS:
         return size_of_form(_LETTERS[name])
     return sum(size_of_form(form) for _, form in layouts()[name])
 
 
 def with_numbers(data: bytes, numbers: Mapping[int, int]) -> bytes:
-    """A plan with other numbers of 32 bits at some offsets, and the hash that fits."""
+    """A copy of a plan with 32-bit numbers replaced at some offsets, and a matching hash."""
     made = bytearray(data)
     for at, number in numbers.items():
         struct.pack_into("=i", made, at, number)
@@ -95,12 +95,13 @@ def with_numbers(data: bytes, numbers: Mapping[int, int]) -> bytes:
 
 
 class Plan:
-    """A plan, of which all is read.
+    """A plan decoded in full.
 
     Attributes:
-        header: its fields.
-        records: by section, its records.
-        numbers: by section of numbers, these.
+        header: fields of the header.
+        places: first offset and end of each section, in order.
+        records: records of each section that has records.
+        numbers: numbers of each section that has plain numbers.
     """
 
     def __init__(self, data: bytes) -> None:
@@ -124,7 +125,7 @@ class Plan:
                 ]
 
     def run(self, section: str, first: int, count: int) -> Sequence[int]:
-        """Numbers that stand one behind the other."""
+        """A run of numbers in a section; it must lie within the section."""
         assert first >= 0
         assert count >= 0
         assert first + count <= len(self.numbers[section])

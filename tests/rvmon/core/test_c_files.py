@@ -1,4 +1,4 @@
-"""The exported C: it judges as the extension does, and is never green for want of memory."""
+"""The exported C judges like the extension, and never passes anything when memory runs out."""
 
 import re
 import shlex
@@ -28,18 +28,18 @@ pytestmark = pytest.mark.compiler
 
 STRICT = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic")
 SANITIZED = ("-O0", "-fsanitize=address,undefined", "-fsanitize-undefined-trap-on-error")
-"""Where something undefined is done the program dies; to tell of it would take long to compile."""
+"""Undefined behaviour traps; the runtime that would print a report takes long to compile."""
 WATCHED = ("gcc", *STRICT, *SANITIZED)
 NARROW = ("gcc", *STRICT, "-m32", "-msse2", "-mfpmath=sse")
 STRICTEST = (*STRICT, "-Wconversion", "-Wshadow")
 PLAIN = ("gcc", *STRICTEST)
 GREEN = {"1", "3"}
+"""Verdicts PASS and NOT_TRIGGERED, as `judge.c` prints them."""
 LARGE = 1 << 20
-"""Passed, and not triggered."""
 
 
 def judged(seed, many, **profile):
-    """Random cases of all time models in turn."""
+    """Random cases that go through the time models in turn."""
     number = 0
     times = list(TimeModel)
     while many > 0:
@@ -52,7 +52,7 @@ def judged(seed, many, **profile):
 
 @pytest.fixture(scope="module")
 def core_object(shared):
-    """The core as a compiler with its options makes it, which takes longest: once for all."""
+    """Compiles the core once per compiler command; it is what takes longest to compile."""
 
     def made(*command):
         name = f"core {zlib.crc32(shlex.join(command).encode()):x}"
@@ -63,34 +63,33 @@ def core_object(shared):
 
 @pytest.fixture
 def exported(tmp_path, core_object):
-    """Makes one program of cases."""
+    """Builds a program of some cases."""
     return lambda cases: Exported(tmp_path, cases, WATCHED, core_object(*WATCHED))
 
 
 def test_exported_c_judges_as_the_extension(exported, core_object):
     exported = exported(list(judged("export", 60)))
     wanted = [2 * exported.records_of_extension(number) for number in range(60)]
-    told = [records(run) for run in exported.judge([(number, HEAP) for number in range(60)])]
-    assert told == wanted
+    found = [records(run) for run in exported.judge([(number, HEAP) for number in range(60)])]
+    assert found == wanted
     exported.compile(NARROW, core_object(*NARROW))
-    told = [records(run) for run in exported.judge([(number, HEAP) for number in range(60)])]
-    assert told == wanted, "32 bits"
-    assert sum(map(len, told)) > 150
-    assert sum(":" in line for lines in told for line in lines) > 8, "captured values"
+    found = [records(run) for run in exported.judge([(number, HEAP) for number in range(60)])]
+    assert found == wanted, "32 bits"
+    assert sum(map(len, found)) > 150
+    assert sum(":" in line for lines in found for line in lines) > 8, "captured values"
 
 
 def records(run):
-    """What a run recorded, or had to say else."""
+    """Lines of records and of errors."""
     return [line for line in run if line.startswith(("r ", "x "))]
 
 
 def without_memory(run):
-    """What was printed but for the bytes that were used."""
+    """The printed lines without the number of bytes used."""
     return [line.rpartition(" ")[0] if line.startswith("e ") else line for line in run]
 
 
-def test_notes_change_nothing(exported):
-    """Whoever keeps them: records and verdicts stay."""
+def test_keeping_notes_changes_no_record_and_no_verdict(exported):
     cases = list(judged("notes", 60))
     of_cases = exported(cases)
     runs = [(number, HEAP) for number in range(len(cases))]
@@ -98,11 +97,8 @@ def test_notes_change_nothing(exported):
     assert list(map(without_memory, bare)) == list(map(without_memory, noted))
 
 
-def test_memory_is_bounded_however_long_windows_are_followed(exported):
-    """Of windows within windows what is over is given up, where samples are positions, too.
-
-    Of notes goes what is not needed any more: no record has more than 400 bytes.
-    """
+def test_memory_does_not_grow_with_the_length_of_a_run(exported):
+    """The core drops the past of nested windows, and keeps at most 400 bytes of notes a record."""
     cases = []
     for time in ("held", "sampled", "sampled every 2 ns"):
         for required in (
@@ -118,16 +114,16 @@ def test_memory_is_bounded_however_long_windows_are_followed(exported):
     for notes in (False, True):
         runs = of_cases.judge([(number, HEAP) for number in numbers], notes=notes)
         used = [int(run[-1].split()[-1]) for run in runs]
-        told = [len(records(run)) for run in runs]
+        recorded = [len(records(run)) for run in runs]
         grown = [b - a for a, b in zip(used[::2], used[1::2], strict=True)]
-        more = [b - a for a, b in zip(told[::2], told[1::2], strict=True)]
+        more = [b - a for a, b in zip(recorded[::2], recorded[1::2], strict=True)]
         each = 400 if notes else 0
         limits = zip(grown, more, strict=True)
         assert all(size <= each * count for size, count in limits), (grown, more)
 
 
-def test_short_memory_is_never_green(exported):
-    """Whatever the block: judged as with a heap, or refused, or said; then nothing has passed."""
+def test_a_block_that_is_too_small_passes_nothing(exported):
+    """Any block judges like a heap, is refused, or reports that memory ran out."""
     exported = exported(list(judged("memory", 40)))
     spoilt = 0
     on_heap = exported.judge([(number, HEAP) for number in range(40)])
@@ -153,7 +149,7 @@ requirement R
   whenever historically[0 ns, 3 ns] p
   then within 99 ns q
 """
-"""An attempt starts and its trigger becomes unknown within one call, which leaves the queue."""
+"""An attempt starts and its trigger becomes unknown within one call, which dissolves the queue."""
 
 
 FORKED = """
@@ -168,10 +164,10 @@ requirement R
 """Each attempt has a run of its own, with notes, and is given samples by the value of `x`."""
 
 
-def test_an_allocation_that_fails_is_never_green(core_object, tmp_path):
-    """Whichever it is, of a heap of which each block is an allocation: attempts stand in queues.
+def test_a_failed_allocation_passes_nothing(core_object, tmp_path):
+    """Whichever it is; open attempts are in queues, and chunks are as small as possible.
 
-    With memory again, the run after a reset is judged as if it had never been short.
+    With enough memory again, the run after a reset has its usual result.
     """
     command = (*WATCHED, "-DCHUNK_SIZE=((size_t)16)")
     stale = Sample(0, {"p": False, "q": False}), Sample(1, {"p": True}), Sample(50, {})
@@ -194,14 +190,14 @@ def test_an_allocation_that_fails_is_never_green(core_object, tmp_path):
 
 
 def halves(run):
-    """What was printed of the first run, and of the second."""
+    """The lines of the first run and those of the second."""
     ends = [place for place, line in enumerate(run) if line.startswith("e ")]
     assert len(ends) == 2
     return run[1 : ends[0] + 1], run[ends[0] + 1 :]
 
 
 def is_spoilt(found, whole):
-    """Whether memory was short in a run, that is like another one up to there."""
+    """Whether memory ran out in a run; checks that it equals a whole run up to that point."""
     _, spoilt, *verdicts, _ = found[-1].split()
     if spoilt == "0":
         assert (found[:-1], verdicts) == (whole[:-1], whole[-1].split()[2:-1])
@@ -209,42 +205,43 @@ def is_spoilt(found, whole):
     short = found.index("x 1")
     assert found[:short] == whole[:short]
     passed = [line for line in records(found[short:]) if line.split()[5:6] == ["1"]]
-    assert set(passed) <= set(whole), "what memory was short for has not passed"
+    assert set(passed) <= set(whole), "an attempt passed after memory had run out"
     assert not GREEN & set(verdicts)
     return True
 
 
 def text_of(spec, *requirements):
-    """A specification in a few words."""
     return f"spec {spec}\nsignal b : bool\n" + "".join(
         f"requirement `{one}`\n  always b\n" for one in requirements
     )
 
 
 def written(folder, text):
-    """The files of a specification, in a folder; returns the names of plans."""
+    """Write the C files of a specification to a folder; returns the names of the plan files."""
     texts = c_files(plan_alone(compile_spec(rvmon.loads(text).checked)))
     for name, file in texts.items():
         (folder / name).write_text(file, encoding="utf-8")
     return [name for name in texts if name.endswith("_plan.c")]
 
 
-def compiled(folder, *line):
-    subprocess.run(line, cwd=folder, check=True)  # noqa: S603
+def run(folder, *line):
+    """Run a command in a folder; returns its output."""
+    done = subprocess.run(line, cwd=folder, check=True, stdout=subprocess.PIPE, text=True)  # noqa: S603
+    return done.stdout
 
 
-def test_nothing_but_the_interface_is_seen(tmp_path, core_object):
-    """Strict compilers take all files; what they define for others is `rv_…`, and tables."""
+def test_strict_compilers_accept_the_files_and_only_the_interface_is_exported(
+    tmp_path, core_object
+):
     (plan,) = written(tmp_path, text_of("door", "A"))
     for compiler in ("arm-none-eabi-gcc -mthumb -mcpu=cortex-m3", "clang"):
         line = [*compiler.split(), *STRICTEST, "-fsyntax-only", plan, "rvmon_core.c"]
         if shutil.which(line[0]):
-            compiled(tmp_path, *line)
-    compiled(tmp_path, *PLAIN, "-c", plan, "-o", "plan.o")
+            run(tmp_path, *line)
+    run(tmp_path, *PLAIN, "-c", plan, "-o", "plan.o")
     for name, prefix in ((core_object(*PLAIN), "rv_"), ("plan.o", "door_")):
-        line = [shutil.which("nm"), "-g", "--defined-only", tmp_path / name]
-        done = subprocess.run(line, check=True, stdout=subprocess.PIPE, text=True)  # noqa: S603
-        found = [line.split()[-1] for line in done.stdout.splitlines()]
+        symbols = run(tmp_path, "nm", "-g", "--defined-only", name)
+        found = [line.split()[-1] for line in symbols.splitlines()]
         assert found
         assert all(one.startswith(prefix) for one in found)
 
@@ -252,7 +249,7 @@ def test_nothing_but_the_interface_is_seen(tmp_path, core_object):
 HOSTILE = [name for name in (*FORGERIES, "??/", "a_n1", "A_N1", "a n1") if name.strip() == name]
 
 
-def test_hostile_names_are_but_names(tmp_path, gcc):
+def test_hostile_names_become_distinct_identifiers_and_strings(tmp_path):
     names = [*HOSTILE, *islice((one for one in hostile_names(1) if one.strip() == one), 300)]
     names = list(dict.fromkeys(name for name in names if not set(name) & set("\0\r\n`")))
     (plan,) = written(tmp_path, text_of("`*/ int x; /*`", *names))
@@ -262,7 +259,7 @@ def test_hostile_names_are_but_names(tmp_path, gcc):
         f"for (i = 0; i < {prefix.upper()}_REQUIREMENTS; i++) puts({prefix}_requirements[i]); "
         "return 0; }\n"
     )
-    compiled(tmp_path, gcc, *STRICT, "main.c", "-o", "main")
+    run(tmp_path, "gcc", *STRICT, "main.c", "-o", "main")
     done = subprocess.run([tmp_path / "main"], check=True, stdout=subprocess.PIPE)  # noqa: S603
     assert done.stdout.decode("utf-8", "surrogatepass").split("\n") == [*names, ""]
     made = identifiers([*names, "speed", "e-stop"])
@@ -315,25 +312,24 @@ requirement R2
 """
 
 
-@pytest.mark.parametrize("text", [text_of("door", "A"), KEYED])
+@pytest.mark.parametrize("text", [text_of("door", "A"), KEYED], ids=["plain", "keyed"])
 def test_the_stated_memory_is_enough(tmp_path, core_object, text):
     (plan,) = written(tmp_path, text)
     (tmp_path / "main.c").write_text(SIZES)
-    begins = []
+    fewest_bytes = []
     for line in (PLAIN, NARROW):
-        compiled(tmp_path, *line, "main.c", plan, core_object(*line), "-o", "main", "-lm")
-        done = subprocess.run([tmp_path / "main"], check=True, stdout=subprocess.PIPE)  # noqa: S603
-        least, stated = map(int, done.stdout.split())
+        run(tmp_path, *line, "main.c", plan, core_object(*line), "-o", "main", "-lm")
+        least, stated = map(int, run(tmp_path, tmp_path / "main").split())
         assert least <= stated
-        begins.append(least)
-    assert begins[1] < begins[0]
+        fewest_bytes.append(least)
+    assert fewest_bytes[1] < fewest_bytes[0]
     data = pack(plan_alone(compile_spec(rvmon.loads(text).checked))).data
-    assert begins[0] == memory_of(data, 0)
+    assert fewest_bytes[0] == memory_of(data, 0)
     assert memory_of(data, FEWEST) > memory_of(data, 0)
 
 
-def test_attempts_that_are_reserved_take_no_more_memory(exported):
-    """They stand where that was reserved, not in queues."""
+def test_reserved_attempts_take_no_more_memory(exported):
+    """They use the reserved memory instead of queues."""
     text = "signal q : bool\nevent e\nrequirement R\n  upon e\n  then within 9 ns q\n"
     checked = rvmon.loads(text).checked
     case = Case(checked, tuple(Sample(t, {"e": True, "q": False}) for t in range(8)))
@@ -342,7 +338,7 @@ def test_attempts_that_are_reserved_take_no_more_memory(exported):
     assert found == large != ["none"]
 
 
-FACE = """
+CPP = """
 #include "rvmon_core.hpp"
 #include "door_plan.h"
 #include <cstdio>
@@ -374,17 +370,16 @@ int main()
 """
 
 
-def test_the_face_for_cpp(tmp_path, core_object):
+def test_the_cpp_header_compiles_and_judges(tmp_path, core_object):
     (plan,) = written(tmp_path, text_of("door", "A"))
-    (tmp_path / "main.cpp").write_text(FACE)
-    compiled(tmp_path, *WATCHED, "-c", plan)
+    (tmp_path / "main.cpp").write_text(CPP)
+    run(tmp_path, *WATCHED, "-c", plan)
     objects = [plan.replace(".c", ".o"), core_object(*WATCHED)]
     warnings = ["-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-pedantic", "-Werror"]
     for compiler in filter(shutil.which, ("clang++", "g++")):
         for standard in ("-std=c++20", "-std=c++11"):
             line = [compiler, standard, *warnings]
-            compiled(tmp_path, *line, "-x", "c++", "-c", plan, "-o", "plan.o")
-            compiled(tmp_path, *line, "-c", "main.cpp", "-o", "main.o")
-    compiled(tmp_path, "g++", "-std=c++11", *SANITIZED, "main.cpp", *objects, "-o", "main")
-    done = subprocess.run([tmp_path / "main"], check=True, stdout=subprocess.PIPE, text=True)  # noqa: S603
-    assert done.stdout == "0 at 2\n0 0\n0 at 2\n0 0\nnone\n"
+            run(tmp_path, *line, "-x", "c++", "-c", plan, "-o", "plan.o")
+            run(tmp_path, *line, "-c", "main.cpp", "-o", "main.o")
+    run(tmp_path, "g++", "-std=c++11", *SANITIZED, "main.cpp", *objects, "-o", "main")
+    assert run(tmp_path, tmp_path / "main") == "0 at 2\n0 0\n0 at 2\n0 0\nnone\n"

@@ -1,4 +1,4 @@
-"""Functions of numbers in the core: to the last bit what the oracle says."""
+"""Numeric functions of the core agree with the oracle to the last bit."""
 
 import random
 
@@ -16,7 +16,7 @@ WHOLE_EDGES = (0, 1, -1, 2, 63, 64, 2**62, 2**63 - 1, -(2**63), 2**53 + 1, -7)
 
 
 def drawn(rng, kind):
-    """A number: an edge, or any."""
+    """A random number, often an edge case."""
     if kind == "int":
         any_one = rng.randint(-(2**63), 2**63 - 1) if rng.random() < 0.3 else rng.randint(-70, 70)
         return rng.choice(WHOLE_EDGES) if rng.random() < 0.4 else any_one
@@ -25,7 +25,7 @@ def drawn(rng, kind):
 
 
 def pairs():
-    """Each function with the kinds of numbers that it takes."""
+    """Each function with each kind of number that it takes."""
     for op in NumericOp:
         rule = op.entry.unit
         if op.is_function and op is not NumericOp.BIT:
@@ -35,8 +35,8 @@ def pairs():
 
 @pytest.mark.law
 @each(("op", "kind"), [*pairs()])
-def test_functions_are_those_of_the_oracle(op, kind):
-    """Of 200 random arguments, infinities and ends of 64 bits among them."""
+def test_a_function_agrees_with_the_oracle(op, kind):
+    """On 200 random arguments, including infinities and the limits of 64 bits."""
     rng = random.Random(f"{op} {kind}")
     unit = " [rad]" if op.entry.unit in ANGLES else ""
     names = "abcd"[: op.entry.least]
@@ -55,7 +55,7 @@ def test_functions_are_those_of_the_oracle(op, kind):
         assert (type(found), found) == (type(wanted), wanted), values
 
 
-def test_bits_are_those_of_twos_complement():
+def test_bit_reads_twos_complement():
     spec = rvmon.loads(
         "spec s\nsignal a, b : int\nevent e\n"
         "requirement R\n  upon e\n  then immediately bit(a, b)\n"

@@ -1,4 +1,4 @@
-"""Instances of a `for each` that are over are let go of, and nothing can tell."""
+"""Instances of a `for each` that are over are dropped without any visible difference."""
 
 import random
 import re
@@ -18,13 +18,13 @@ HEAD = "signal ok : bool\nevent order(id: int)\nevent done(id: int)\n"
 REQUIRED = {
     "another event with the key": "upon order\n  then within 3 s done.id == k",
     "a signal": "upon order\n  then within 3 s ok",
-    "what was before": "upon order and once[1 s, 3 s] ok\n  then for 2 s not done",
-    "its own past": "upon order and not once[1 s, 4 s] order\n  then within 3 s ok",
-    "a past that knows the key": (
+    "the past of a signal": "upon order and once[1 s, 3 s] ok\n  then for 2 s not done",
+    "the past of the event": "upon order and not once[1 s, 4 s] order\n  then within 3 s ok",
+    "a past that reads the key": (
         "upon order and not once[1 s, 9 s] done.id == k\n  then within 2 s ok"
     ),
-    "stretches": "whenever order and ok\n  then within 2 s done.id == k",
-    "any time": "upon order or ok\n  then within 3 s done.id == k",
+    "episodes": "whenever order and ok\n  then within 2 s done.id == k",
+    "a trigger without the key": "upon order or ok\n  then within 3 s done.id == k",
     "a captured value": (
         "upon order\n  then within 3 s (done.id == k and done.id == i)\n  let i = order.id"
     ),
@@ -37,7 +37,7 @@ def text_of(required, time=""):
 
 
 def samples(rng, count):
-    """Many keys, most of which come once or twice; now and then one that is not known."""
+    """Many keys, most of which occur once or twice, and a few unknown ones."""
     t = 0
     for number in range(count):
         t += rng.choice([1, 5, 10, 25])
@@ -56,7 +56,7 @@ def samples(rng, count):
 @pytest.mark.law
 @pytest.mark.parametrize("time", ["", "time sampled\n", "time sampled every 1 s\n"])
 @pytest.mark.parametrize("name", REQUIRED)
-def test_what_is_over_changes_no_record(name, time):
+def test_dropping_finished_instances_changes_no_record(name, time):
     text = re.sub(r"(\d) s\b", r"\g<1>0 ns", text_of(REQUIRED[name], time))
     checked = rvmon.loads(text).checked
     case = Case(checked, tuple(samples(random.Random(f"{name}/{time}"), 18)), None)
@@ -70,17 +70,17 @@ COMPARED = {
     "the limit first": "(v * 2 >= y) U[0 ns, 9 ns] n > w",
     "equal, unequal": "for 4 ns (y != v and n != w)",
     "two limits of one signal": "within 9 ns (y > v and y < v + 1)",
-    "a limit that moves": "within 9 ns (y > v + x or abs(y - v) > 1)",
+    "a limit that changes": "within 9 ns (y > v + x or abs(y - v) > 1)",
     "a limit and a constant": "for 9 ns (y <= v or y > 2)",
-    "before": "within 9 ns (y < 1 and once[0 ns, 5 ns] (y > v))",
+    "the past of a comparison": "within 9 ns (y < 1 and once[0 ns, 5 ns] (y > v))",
 }
 
 
 @pytest.mark.law
 @pytest.mark.parametrize("each", ["upon e", "upon rise(y > 1)", "whenever x > 1"])
 @pytest.mark.parametrize("required", COMPARED)
-def test_attempts_compare_with_what_they_captured(required, each):
-    """A sample calls only attempts in which it may change a comparison."""
+def test_comparisons_with_captured_values_agree_with_the_law(required, each):
+    """The core visits only attempts in which a sample may change a comparison."""
     text = f"""signal x, y : real
 signal n : int
 event e
@@ -127,8 +127,8 @@ requirement R
 
 @pytest.mark.slow
 @pytest.mark.parametrize("time", ["", "time sampled every 10 ms\n"])
-@pytest.mark.parametrize("name", ["another event with the key", "what was before", "stretches"])
-def test_what_is_over_takes_no_room(name, time):
+@pytest.mark.parametrize("name", ["another event with the key", "the past of a signal", "episodes"])
+def test_finished_instances_take_no_memory(name, time):
     monitor = rvmon.loads(text_of(REQUIRED[name], time)).monitor(keep=5)
     sizes = []
     for number in range(30_000):
@@ -142,9 +142,9 @@ def test_what_is_over_takes_no_room(name, time):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("time", ["", "time sampled\n", "time sampled every 1 s\n"])
-def test_a_reason_never_denies_what_was(time):
-    """Nothing had "never" been true that was, nor since an instant behind which it was."""
-    spec, told = rvmon.loads(text_of(REQUIRED["another event with the key"], time)), Counter()
+def test_a_reason_says_when_the_key_last_occurred(time):
+    """A reason never says "never" or "since" about an event that did occur then."""
+    spec, claims = rvmon.loads(text_of(REQUIRED["another event with the key"], time)), Counter()
     for seed in range(100):
         rng, t, done = random.Random(seed), 0, []
         monitor = spec.monitor()
@@ -167,19 +167,19 @@ def test_a_reason_never_denies_what_was(time):
             if one.verdict != "F":
                 continue
             words, instant = claim.groups()
-            told[words] += 1
+            claims[words] += 1
             if words == "never been true":
                 assert not before, one.reason
             elif words == "since":
                 assert all(at <= float(instant) for at in before), one.reason
             else:
                 assert max(before) == float(instant), one.reason
-    assert min(told[words] for words in ("never been true", "since", "last been true at")) > 5
+    assert min(claims[words] for words in ("never been true", "since", "last been true at")) > 5
 
 
 @pytest.mark.parametrize("many", [2, 7, pytest.param(70, marks=pytest.mark.slow)])
-def test_those_that_become_sure_at_once_are_numbered_by_their_triggers(many):
-    """Whatever the order of their instances; it is that of what began in doubt, too."""
+def test_attempts_that_become_certain_together_are_numbered_by_their_triggers(many):
+    """The order of their instances does not matter; attempts that start in doubt do the same."""
     spec = rvmon.loads(
         "spec s\ntime sampled\nsignal x : real\nevent g(k: int)\nevent o(k: int)\n"
         "requirement R\n  whenever x > 1 and once o.k == key\n  then x < 5\n"

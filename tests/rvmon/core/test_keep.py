@@ -1,4 +1,4 @@
-"""Runs of weeks: the newest records of each verdict are kept, and tell the same as if all were."""
+"""`keep` limits the records of each verdict to the newest, and changes nothing else."""
 
 import random
 from collections import Counter
@@ -22,7 +22,7 @@ def told(attempt):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("time", TimeModel)
-def test_what_is_kept_is_told_as_if_all_was(time):
+def test_the_newest_records_are_kept_and_the_others_are_counted(time):
     dropped = 0
     for seed in range(4):
         rng = random.Random(f"keep/{time.name}/{seed}")

@@ -1,4 +1,4 @@
-"""The type of the core: what it takes, what it refuses, what it leaves behind."""
+"""The extension type of the core: what it accepts, what it refuses, and that it leaks nothing."""
 
 import gc
 import sys
@@ -16,7 +16,7 @@ from rvmon.monitor.packed_plan import PlannedCore, planned_core
 from rvmon.native import Monitor as Run
 
 SPEC = """
-spec odd "All that is laid out"
+spec odd "Something of each kind"
 signal p, q : bool
 signal x : real   stale after 2 s
 signal n : int
@@ -47,7 +47,7 @@ requirement R2
 """
 
 NUMBERS = ("p", "q", "x", "n", "mode", "e", "f")
-"""The names, in their order."""
+"""The declared names, in the order of their numbers."""
 
 
 def planned_of(text: str = SPEC) -> PlannedCore:
@@ -62,18 +62,18 @@ def planned() -> PlannedCore:
 
 @pytest.fixture
 def run(planned) -> Run:
-    """A run of it; what takes a closer look raises `LookupError`."""
-    return planned.monitor(frozenset(), closer, closer)
+    """A run that raises `LookupError` where it falls back to Python."""
+    return planned.monitor(frozenset(), fallback, fallback)
 
 
-def closer(*given: object, **named: object) -> list[rvmon.Attempt]:
-    """What a sample is left to."""
+def fallback(*given: object, **named: object) -> list[rvmon.Attempt]:
+    """Stands in for the Python code that takes the calls that the core leaves alone."""
     raise LookupError(given, named)
 
 
 @pytest.mark.slow
-def test_the_collector_steps_in_the_midst_of_a_step():
-    """Attempts are made of copies: what the core holds may move while they are."""
+def test_a_step_within_a_garbage_collection_of_a_step_harms_nothing():
+    """Attempts are made from copies, since the core may move its records meanwhile."""
     monitor = rvmon.loads(WAITING).monitor()
     meanwhile: list[int] = []
     t = 0
@@ -89,15 +89,15 @@ def test_the_collector_steps_in_the_midst_of_a_step():
     gc.collect()
     before = gc.get_threshold()
     gc.callbacks.append(step)
-    gc.set_threshold(500)  # the step alone makes 3,000 attempts
+    gc.set_threshold(500)  # one step makes 3,000 attempts
     try:
         decided = monitor.step_ns(t + 1, {"q": True})
     finally:
         gc.set_threshold(*before)
         gc.callbacks.remove(step)
-    told = [(one.requirement, one.number, one.decided) for one in decided]
-    assert meanwhile or sys.version_info >= (3, 12)  # which collect after the call
-    assert told == [(r, n, t + 1) for r in ("R1", "R2") for n in range(1, 1501)]
+    found = [(one.requirement, one.number, one.decided) for one in decided]
+    assert meanwhile or sys.version_info >= (3, 12)  # newer versions collect after the call
+    assert found == [(r, n, t + 1) for r in ("R1", "R2") for n in range(1, 1501)]
 
 
 ODD: list[Any] = [
@@ -111,9 +111,9 @@ ODD: list[Any] = [
 
 @each("values", ODD)
 @each("before", [{}, {"q": True, "f": True, "e": {"k": 5}}])
-def test_what_takes_a_closer_look_is_left(planned, values, before):
-    """Python gets the call as it was; nothing was taken of it."""
-    run = planned.monitor(frozenset(), closer, closer)
+def test_an_unusual_sample_is_passed_on_to_python(planned, values, before):
+    """Python gets the call unchanged, and the core takes nothing of it."""
+    run = planned.monitor(frozenset(), fallback, fallback)
     given = {**before, **values} if isinstance(values, dict) else values
     with pytest.raises(LookupError) as left:
         run.step_ns(7, given)
@@ -123,8 +123,8 @@ def test_what_takes_a_closer_look_is_left(planned, values, before):
     assert run.times() == (7, 7, 7)
 
 
-def test_calls_of_another_form_are_left(run):
-    """So are times that are no integers, or no floats, and those that are out of order."""
+def test_an_unusual_call_is_passed_on_to_python(run):
+    """So are times of the wrong type or out of range, and times out of order."""
     calls: list[tuple[Callable[..., object], tuple[object, ...], dict[str, object]]] = [
         (run.step_ns, (1.0, {}), {}),
         (run.step_ns, (1 << 62, {}), {}),
@@ -152,7 +152,7 @@ def test_calls_of_another_form_are_left(run):
     assert run.step_ns(9, {}) == ()
 
 
-def test_a_row_that_is_before_the_one_above_is_not_taken(run):
+def test_rows_are_taken_up_to_the_first_that_goes_back_in_time(run):
     assert run.rows(np.array([1, 5, 5, 4, 9]), ()) == 3
     assert run.times() == (1, 5, 5)
     assert run.rows(np.array([3]), ()) == 0
@@ -194,27 +194,25 @@ WRONG: list[tuple[Any, Any]] = [
 
 
 @each("given", WRONG)
-def test_columns_that_are_none_are_refused(run, given):
-    """Their sizes, kinds and numbers are looked at before anything is read."""
+def test_malformed_columns_are_refused(run, given):
+    """The core checks sizes, kinds and numbers before it reads anything."""
     with pytest.raises((ValueError, TypeError, BufferError)):
         run.rows(*given)
     assert run.times() == (None, None, None)
 
 
 def parts_of(planned: PlannedCore) -> list[Any]:
-    """The arguments of the type."""
+    """The arguments that the extension type is called with."""
     kept: list[Any] = []
 
     class Kept:
-        """Stands in for the type."""
-
         def __new__(cls, *given: Any) -> Any:
             kept.extend(given)
             return None
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("rvmon.native.Monitor", Kept)
-        planned.monitor(frozenset(), closer, closer)
+        planned.monitor(frozenset(), fallback, fallback)
     return kept
 
 
@@ -234,15 +232,14 @@ def damaged(planned: PlannedCore) -> Iterator[list[Any]]:
     yield [3, reading, absent, look, attempts]
 
 
-def test_arguments_that_do_not_fit_are_refused(planned):
+def test_inconsistent_arguments_are_refused(planned):
     assert Run(*parts_of(planned)).times() == (None, None, None)
     for given in damaged(planned):
         with pytest.raises((ValueError, TypeError)):
             Run(*given)
 
 
-def test_names_and_fields_of_wrong_numbers_are_left(planned):
-    """A number that is none of the plan's is as good as none."""
+def test_names_and_fields_numbered_outside_the_plan_are_passed_on_to_python(planned):
     data, (numbers, words, *rest), *others = parts_of(planned)
     odd = ({**numbers, "p": 7, "q": -1}, (*words[:5], {"k": 2, "where": -1}, *words[6:]), *rest)
     run = Run(data, odd, *others)
@@ -252,8 +249,8 @@ def test_names_and_fields_of_wrong_numbers_are_left(planned):
 
 
 def everything(planned: PlannedCore, wrong: list[list[Any]]) -> None:
-    """All calls of a run, and all ways to fail in them."""
-    run = planned.monitor(frozenset({"q"}), closer, closer)
+    """Make all calls of a run, and let each fail in all ways."""
+    run = planned.monitor(frozenset({"q"}), fallback, fallback)
     samples: list[Any] = [{}, {"p": True, "x": 1.0}, {"z": 1}, {"e": ({"k": 1}, {"k": 2})}, {3: 1}]
     samples += [{"e": tuple({"k": k} for k in range(50))}, {"e": ({"k": 1}, 3)}, {"n": 2**70}]
     samples += [{"mode": "".join(["gr", "een"])}, {"".join(["p"]): False, "x": 0.0}, {"q": True}]
@@ -280,11 +277,11 @@ def everything(planned: PlannedCore, wrong: list[list[Any]]) -> None:
     run.reset()
 
     ring: list[Any] = []
-    ring.append(planned.monitor(frozenset(), lambda *_: ring, closer))
+    ring.append(planned.monitor(frozenset(), lambda *_: ring, fallback))
 
 
 @pytest.mark.slow
-def test_nothing_is_left_behind(planned):
+def test_no_call_leaks_memory(planned):
     wrong = list(damaged(planned))
     for _ in range(5):
         everything(planned, wrong)
@@ -294,11 +291,11 @@ def test_nothing_is_left_behind(planned):
         found.append(sys.getallocatedblocks())
         for _ in range(20):
             everything(planned, wrong)
-    assert min(found[1:]) <= found[0] + 15  # a leak in any way leaves 20
+    assert min(found[1:]) <= found[0] + 15  # any leak leaves at least 20
 
 
 def test_records_share_the_letters_of_their_notes():
-    """Failures of a network refer to letters that stand once, each to as many as it was told by."""
+    """Failures of a network refer to shared letters, each up to its own decision."""
     spec = rvmon.loads(
         "spec s\nsignal p, q : bool\nevent e\nrequirement R\n"
         "  upon e\n  then within 25 ns for 15 ns (p and q)\n"

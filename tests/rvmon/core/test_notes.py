@@ -1,4 +1,4 @@
-"""Notes of the core: what its records say beside the verdict, whenever that is read."""
+"""Notes of the core: records give their reasons correctly, whenever they are read."""
 
 import gc
 import pickle
@@ -26,7 +26,7 @@ requirement W "lasting"
 
 
 @pytest.mark.slow
-def test_a_reason_can_be_read_long_after(tmp_path):
+def test_a_reason_can_be_read_long_after_the_decision():
     monitor = spec_of(RESPONSE).monitor()
     monitor.step_ns(0, {"p": False, "q": False})
     monitor.step_ns(7 * MS, {"p": True})
@@ -50,8 +50,7 @@ def test_a_reason_can_be_read_long_after(tmp_path):
     assert pickle.loads(pickle.dumps(copies[1])) == failed  # noqa: S301
 
 
-def test_what_an_endless_run_owes_is_told_by_its_last_part():
-    """An attempt that is open all the time says why it failed, long after what it saw first."""
+def test_an_attempt_open_for_long_gives_the_reason_of_its_end():
     spec = spec_of(
         "signal p, q : bool\nrequirement U\n  upon start\n  then always (p -> within 3 ms q)\n"
     )
@@ -63,8 +62,8 @@ def test_what_an_endless_run_owes_is_told_by_its_last_part():
     assert failed.reason.startswith("`q` had to come true between 9.98")
 
 
-def test_what_an_attempt_with_let_saw_includes_the_event_that_starts_others():
-    """The runs of open attempts do not hear of such an event; their notes still show it."""
+def test_an_attempt_with_let_shows_the_event_that_starts_others():
+    """Open attempts are not stepped by such an event, but their notes show it."""
     spec = rvmon.loads(
         "spec watch\ntime sampled every 1 ms\nsignal x : real\nevent e\nrequirement R\n"
         "  upon e\n  let v = x\n  then always[0, 9 ms] x < v + 3\n"

@@ -1,4 +1,4 @@
-"""Whole numbers in the core: exact within 64 bits; real ones are doubles."""
+"""Numbers in the core: whole numbers are exact within 64 bits, real ones are doubles."""
 
 import numpy as np
 import pytest
@@ -27,10 +27,10 @@ EXACT = [
     ("x < 10 or x > 9007199254740993", {"x": 2**53 + 2}, "P"),
     ("x < 10 or x > 9007199254740993", {"x": 2**53 + 1}, "F"),
     ("x / y < 0.3 or y == 0 or x > 2", {"x": 2**53, "y": 3}, "P"),
-    # Beside a real one it is not rounded to a double first.
+    # A whole number is compared with a real one exactly, not rounded to a double first.
     ("x == z", {"x": 2**53 + 1, "z": float(2**53)}, "F"),
     ("x < z or x == 0", {"x": MOST, "z": 2.0**63}, "P"),
-    # No sum of two numbers that are there is one that is not.
+    # A result beyond 64 bits is unknown.
     ("x + y > 0 or x == 0", {"x": MOST, "y": 1}, "I"),
     ("x * y > 0 or x == 0", {"x": 2**32, "y": 2**32}, "I"),
     ("abs(x) >= 0 or x == 0", {"x": -(2**63)}, "I"),
@@ -38,14 +38,14 @@ EXACT = [
     ("delta(x) - 1 < 0 or x == 0", {"x": -(2**63)}, "I"),
     ("not (e.k == 9007199254740993)", {"e": {"k": 2**53}}, "P"),
     ("not (e.k == 9007199254740993)", {"e": {"k": 2**53 + 1}}, "F"),
-    # Large doubles are computed with as Python does.
+    # Doubles may be large.
     ("z * z + 1000000 * z < 1e300", {"z": 2e150}, "F"),
 ]
 
 
 @each(("required", "values", "verdict"), EXACT)
 def test_whole_numbers_are_exact_or_unknown(required, values, verdict):
-    """Within 64 bits the core says what Python's own numbers say, of columns and of samples."""
+    """Within 64 bits the core computes as Python does, on columns and on samples."""
     spec, before = spec_of(required), {"x": 0, "y": 0, "z": 0.0}
     after = before | values
     columns = {name: [before.get(name), one] for name, one in after.items()}
@@ -55,8 +55,8 @@ def test_whole_numbers_are_exact_or_unknown(required, values, verdict):
         assert spec.evaluate(trace, allow_missing=["e"]).verdicts == {"R1": verdict}
 
 
-def test_a_whole_number_for_a_real_one_is_rounded_once():
-    """The nearest double, ties to even, be it within 64 bits or beyond."""
+def test_a_whole_number_given_for_a_real_signal_is_rounded_once():
+    """To the nearest double, ties to even, within 64 bits and beyond."""
     spec = rvmon.loads(
         "spec s\nsignal z : real\nrequirement R1\n  upon start\n  then z == 0\n  let v = z\n"
     )
@@ -66,7 +66,7 @@ def test_a_whole_number_for_a_real_one_is_rounded_once():
         assert isinstance(failed.captured["v"], float)
 
 
-def test_a_number_of_many_digits_in_a_file_is_refused(tmp_path):
+def test_a_whole_number_of_too_many_digits_in_a_file_is_refused(tmp_path):
     path = tmp_path / "a.csv"
     path.write_text(f"t,x\n0,1\n1,{'9' * 400}\n")
     with pytest.raises(

@@ -1,4 +1,4 @@
-"""Monitors that the core runs: what a user of `Spec.monitor()` meets."""
+"""Online monitors run by the core, as users of `Spec.monitor()` see them."""
 
 import math
 from enum import StrEnum
@@ -50,9 +50,9 @@ def told(attempts):
 
 
 def both(spec, samples, end=None, **how):
-    """Step a monitor that reads samples itself, and one for which Python looks them through.
+    """Step a monitor whose core reads the samples and one for which Python does; they must agree.
 
-    They say the same each time.
+    The core leaves mappings that are not a dict to Python. Returns what the steps decided.
     """
     fast, slow = spec.monitor(**how), spec.monitor(**how)
     found = []
@@ -61,7 +61,7 @@ def both(spec, samples, end=None, **how):
         mine, other = fast.step_ns(t, values), slow.step_ns(t, MappingProxyType(values))
         assert told(mine) == told(other)
         if how.get("settle") != "next" and (due is None or t < due):
-            assert all(attempt.decided >= t for attempt in mine), "time decided what was not due"
+            assert all(attempt.decided >= t for attempt in mine), "decided before it was due"
         assert told(sorted(fast.open, key=order)) == told(sorted(slow.open, key=order))
         found += told(mine)
     mine, other = fast.finish_ns(end), slow.finish_ns(end)
@@ -72,8 +72,8 @@ def both(spec, samples, end=None, **how):
     return found
 
 
-def as_the_law_has_it(samples):
-    """Whether a run is judged as the oracle judges it, where half a second is a tick."""
+def agrees_with_the_law(samples):
+    """Whether a run is judged as the oracle judges it, with ticks of half a second."""
     spec = rvmon.loads(SPEC.replace("3 s", "6 ns").replace("1 s", "2 ns"))
     check = Validator(spec.checked, None, frozenset()).check
     monitor = spec.monitor()
@@ -91,7 +91,7 @@ def order(attempt):
 S = 1_000_000_000
 
 
-def test_records_come_with_the_step_that_decides_them(spec):
+def test_a_step_returns_the_records_that_it_decides(spec):
     samples = [
         (0, FIRST),
         (S, {"p": True}),
@@ -111,7 +111,7 @@ def test_records_come_with_the_step_that_decides_them(spec):
     ]
 
 
-def test_all_kinds_of_values(spec):
+def test_all_kinds_of_values_are_judged_as_the_law_has_it(spec):
     values = [
         {"speed": 3},
         {"speed": np.float64(1.5), "p": np.bool_(True)},
@@ -128,22 +128,22 @@ def test_all_kinds_of_values(spec):
     ]
     samples = [(0, FIRST), *((number * S // 2, row) for number, row in enumerate(values, 1))]
     both(spec, samples)
-    assert as_the_law_has_it(samples)
+    assert agrees_with_the_law(samples)
 
 
 class Row(dict):
-    """A dictionary of somebody's own."""
+    """A subclass of dict."""
 
 
 class Name(StrEnum):
-    """Names that are strings, though not plain ones."""
+    """Names of a subclass of str."""
 
     P = "p"
     PICK = "pick"
     ID = "id"
 
 
-def test_any_mapping_of_any_strings(spec):
+def test_subclasses_of_dict_and_str_are_accepted(spec):
     samples = [
         (0, Row(FIRST)),
         (S, {Name.P: True}),
@@ -178,7 +178,7 @@ def test_any_mapping_of_any_strings(spec):
         (2.5, {}, TraceError, "whole"),
     ],
 )
-def test_what_is_wrong_is_refused(spec, t, values, error, text):
+def test_a_wrong_sample_is_refused_and_the_run_goes_on(spec, t, values, error, text):
     monitor = spec.monitor()
     assert monitor.step_ns(t_ns=S, values=FIRST) == ()
     with pytest.raises(error, match=text):
@@ -194,7 +194,7 @@ def test_what_is_wrong_is_refused(spec, t, values, error, text):
         *(math.nan, math.inf, np.float64(0.1), np.float32(0.1), np.int64(7), Fraction(1, 3), "1"),
     ],
 )
-def test_seconds_are_rounded_alike_everywhere(spec, seconds):
+def test_step_rounds_seconds_like_python(spec, seconds):
     found = []
     for way in ("step", "step_ns"):
         monitor = spec.monitor()
@@ -207,7 +207,7 @@ def test_seconds_are_rounded_alike_everywhere(spec, seconds):
     assert found[0] == found[1]
 
 
-def test_advance_finish_reset(spec):
+def test_a_monitor_can_be_finished_and_reset(spec):
     monitor = spec.monitor()
     assert monitor.open == ()
     assert monitor.next_due is None
@@ -241,12 +241,12 @@ requirement R1
 
 
 def knocks(begin: int, count: int) -> list[tuple[int, dict[str, bool]]]:
-    """So many short stretches of `p`, a millisecond each."""
+    """Pulses of `p`, each a millisecond long."""
     return [(begin + n * S // 1000, {"p": n % 2 == 0}) for n in range(2 * count)]
 
 
-def test_open_attempts_beyond_any_number():
-    """Room grows for them, where a gap starts many at once, and for stretches of the past."""
+def test_memory_grows_with_open_attempts_and_past_intervals():
+    """A gap between samples starts many attempts at once."""
     bursts = [row for n in range(4) for row in knocks(10 * n * S, 300)]
     monitor = rvmon.loads(ECHO).monitor()
     decided = []

@@ -1,4 +1,4 @@
-"""The core against the law: random cases, in all forms that it is run in."""
+"""The core against the oracle, on random cases, in all forms in which it runs."""
 
 from dataclasses import replace
 
@@ -20,16 +20,13 @@ KINDS = {
     "expressions": (Profile(amounts=100, form="expression"), LOST, {}),
     "special": (Profile(), replace(LOST, long=50), {"windows": 90, "letters": 100}),
 }
-"""What is drawn: specifications, traces, and of windows in windows and of many letters how much."""
+"""Profiles of specifications and traces; per cent of nested windows and of many letters."""
 
 
 @pytest.mark.parametrize("time", TimeModel)
 @pytest.mark.parametrize("kind", KINDS)
-def test_each_call_says_what_the_law_has_it_say(kind, time):
-    """What a call returns, what the report says, and that what is wrong is refused.
-
-    By samples, by rows, put away and taken up again; and where nothing is lost in portions, too.
-    """
+def test_each_call_and_the_report_agree_with_the_law(kind, time):
+    """By samples, by rows, with a reload in between, and without outages with settle='next' too."""
     profile, traces, special = KINDS[kind]
     is_any = kind == "any"
     forms = ("c", "c rows", "c+next+interrupt") if is_any else ("c rows", "c+interrupt")

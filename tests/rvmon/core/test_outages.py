@@ -1,4 +1,4 @@
-"""Names that are lost for a while: what the core says of them, by the sentences of SEMANTICS 1."""
+"""Outages in the core, by the sentences of section 1 of SEMANTICS.md."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ event g(k: int)
 
 
 def planned(requirements: str, time: str = "held") -> PlannedCore:
-    """The plan of some requirements over the names above."""
+    """The plan of requirements over the names above."""
     spec = rvmon.loads(f'spec some "thing"\ntime {time}\n{NAMES}\n{requirements}')
     compiled: CompiledSpec = compile_spec(spec.checked)
     return planned_core(compiled)
 
 
-def test_names_come_as_their_numbers_in_the_plan():
+def test_lost_names_are_given_by_their_numbers_in_the_plan():
     run = planned("requirement R\n  always p").monitor(frozenset({"q"}))
     assert run.lose(iter([1]), 0)
     assert run.found((), 0)
@@ -59,8 +59,8 @@ LONG = {
 }
 
 
-def told(requirement, time, unit, said, lost, first, last):
-    """The report of a monitor that is told `actions` in a unit, and that a name was lost."""
+def judged(requirement, time, unit, said, lost, first, last):
+    """The report on `actions` whose instants are in a unit, with an outage of one name."""
     monitor = rvmon.loads(
         f"time {time}\n{NAMES}\nrequirement R\n  {requirement.format(unit)}\n"
     ).monitor()
@@ -76,26 +76,25 @@ def told(requirement, time, unit, said, lost, first, last):
 @each("time", ["held", "sampled"])
 @each("requirement", LONG)
 @each("unit", ["ns", "s"])
-def test_long_outages_are_as_short_ones(time, requirement, unit):
-    """However many ticks they have; of samples each of them may have been a trigger, too."""
-    report, _ = told(requirement, time, unit, "0 -p q e; 7 p", "p", 2, 5)
+def test_a_long_outage_is_judged_like_a_short_one(time, requirement, unit):
+    """In sampled time each of its ticks may have been a trigger."""
+    report, _ = judged(requirement, time, unit, "0 -p q e; 7 p", "p", 2, 5)
     in_doubt = time == "sampled" and LONG[requirement] == "P"
     assert report.verdicts["R"] == ("I" if in_doubt else LONG[requirement])
 
 
 @pytest.mark.slow
 @each("unit", ["ns", "s"])
-def test_of_many_ticks_a_network_says_nothing(unit):
-    """Better than something wrong, also of what looks back at them later."""
+def test_a_network_is_inconclusive_on_an_outage(unit):
+    """So is what looks back at the outage later."""
     text = "upon e\n  then once[0 s, 4 {0}] (eventually[0 s, 1 {0}] p)"
-    report, scale = told(text, "sampled", unit, "0 -p; 7 -p e; 9", "q", 2, 5)
+    report, scale = judged(text, "sampled", unit, "0 -p; 7 -p e; 9", "q", 2, 5)
     found = [(one.triggered, one.in_doubt, one.verdict) for one in report.attempts]
     assert found == [(7 * scale, False, "I"), (2 * scale, True, "I")]
 
 
 @pytest.mark.law
-def test_random_samples_too_late_leave_what_the_law_leaves():
-    """Of each requirement the verdict."""
+def test_a_late_sample_leaves_the_verdicts_that_the_law_leaves():
     traces = TraceProfile(unknowns=False, advances=False, fewest=3)
     changed = 0
     for number in range(40):
@@ -117,7 +116,7 @@ def test_random_samples_too_late_leave_what_the_law_leaves():
         first = case.spec.time is TimeModel.SAMPLED or late.t < kept.samples[0].t
         for name, one in compiled.requirements.items():
             if not first and one.reads.isdisjoint(late.values):
-                expected[name] = without[name]  # what a formula does not depend on is not read
+                expected[name] = without[name]  # the core drops names that decide nothing
         assert verdicts == expected
         changed += verdicts != without
     assert changed > 6

@@ -1,4 +1,4 @@
-"""Packing plans: what must hold of the bytes, whatever is specified."""
+"""Packed plans: their bytes agree with plan.h, and the core checks them."""
 
 import ctypes
 import random
@@ -72,7 +72,7 @@ requirement R7 upon e and once[0 s, 2 s] e.k == i - 1 then F[0 s, 2 s] once[0 s,
 """Something of each kind."""
 
 COUNTED = "signal p : bool\ncoverpoint c = p {yes: true, no: false}\n"
-"""What a requirement has none of."""
+"""A specification without requirements, whose bins are counted."""
 
 DIAGRAM = (
     "spec s\n"
@@ -80,11 +80,11 @@ DIAGRAM = (
     + "requirement R\n  upon start\n  then "
     + " or ".join(f"(within {n + 1} s s{n})" for n in range(18))
 )
-"""A requirement with more letters than stand in a table."""
+"""A requirement with too many letters for a table."""
 
 
 def planned(text: str, *, measured: bool = False) -> Planned:
-    """The plan of a specification, as it is to be packed."""
+    """The plan of a specification before it is packed."""
     return plan_alone(rvmon.loads(text)._compiled, measured=measured)
 
 
@@ -93,7 +93,7 @@ def packed(text: str, *, measured: bool = False) -> Packed:
 
 
 def drawn(seed: int) -> Planned | None:
-    """The plan of a random specification, measured or not; `None` if it is refused."""
+    """The plan of a random specification, measured for odd seeds; `None` if it is refused."""
     try:
         compiled = CompiledSpec(random_spec(random.Random(seed), Profile(many=20)))
         return plan_alone(compiled, measured=seed % 2 == 1)
@@ -102,12 +102,12 @@ def drawn(seed: int) -> Planned | None:
 
 
 @pytest.mark.parametrize("path", WRITTEN, ids=lambda path: path.stem)
-def test_the_core_takes_a_written_specification(path):
+def test_the_core_accepts_the_specifications_of_the_repository(path):
     spec = rvmon.load(path)
     planned_core(spec._compiled, measured=True).monitor(frozenset())
 
 
-def test_equal_shapes_share_all_but_their_bounds():
+def test_automata_of_equal_shape_share_all_but_their_bounds():
     text = "spec s\nsignal p, q, r, s, t, u : bool\n" + "".join(
         f"requirement R{n}\n  upon {a}\n  then within {n + 1} s {b}\n"
         for n, (a, b) in enumerate(("pq", "rs", "tu"))
@@ -121,7 +121,7 @@ def test_equal_shapes_share_all_but_their_bounds():
 
 
 CALCULATED = [SimpleNamespace(name=op.name, value=number) for op, number in OPERATIONS.items()]
-BEHIND = [SimpleNamespace(name="NOW", value=NOW), SimpleNamespace(name="WINDOW", value=WINDOW)]
+LAST = [SimpleNamespace(name="NOW", value=NOW), SimpleNamespace(name="WINDOW", value=WINDOW)]
 
 
 @each(
@@ -131,23 +131,23 @@ BEHIND = [SimpleNamespace(name="NOW", value=NOW), SimpleNamespace(name="WINDOW",
         ("ATOM_", AtomOp),
         ("NODE_", NodeOp),
         ("OP_", Operator),
-        ("CODE_", (*Code, *CALCULATED, *BEHIND)),
+        ("CODE_", (*Code, *CALCULATED, *LAST)),
         ("MEASURE_", Measure),
     ],
 )
-def test_what_c_enumerates_has_the_same_numbers(prefix: str, numbers: Iterable[IntEnum]):
+def test_enumerators_have_the_same_numbers_in_c(prefix: str, numbers: Iterable[IntEnum]):
     found = {name[len(prefix) :]: n for name, n in enumerators().items() if name.startswith(prefix)}
     assert found == {one.name: one.value for one in numbers}
 
 
-def test_limits_are_those_of_c():
+def test_limits_are_the_same_in_c():
     limits = dict(re.findall(r"#define (\w+) (\d+)\n", HEADER.read_text(encoding="utf-8")))
     assert int(limits["PROGRAM_DEPTH"]) == DEPTH
     assert int(limits["PAYLOAD_EVENTS_MOST"]) == MOST_EVENTS
 
 
 @pytest.mark.compiler
-def test_records_have_the_layout_that_c_gives_them(tmp_path):
+def test_records_have_the_same_layout_in_c(tmp_path):
     lines = []
     for type_, fields in layouts().items():
         if type_ != "list":
@@ -176,7 +176,7 @@ def test_records_have_the_layout_that_c_gives_them(tmp_path):
         assert Section[name].record.size == size_of(type_)
 
 
-def test_what_goes_beyond_limits_is_refused():
+def test_formulas_beyond_the_limits_are_refused():
     def nested(depth: int) -> str:
         deep = "".join("1 + (x * (" for _ in range(depth // 2)) + "x" + "))" * (depth // 2)
         return f"signal x : real\nrequirement R\n  always {deep} > x\n"
@@ -195,7 +195,7 @@ def test_what_goes_beyond_limits_is_refused():
 
 @pytest.fixture(scope="module")
 def check(tmp_path_factory):
-    """The core's own check of bytes: the section that is wrong, or −1."""
+    """The core's own check of a plan: returns the number of the wrong section, or −1."""
     library = tmp_path_factory.mktemp("core") / "core.so"
     names = (
         one for one in core_sources.core_files() if one.startswith(("plan/", "input/functions"))
@@ -223,7 +223,7 @@ def check(tmp_path_factory):
 
 @pytest.mark.compiler
 @pytest.mark.law
-def test_the_core_takes_what_is_packed(check):
+def test_the_core_accepts_packed_plans(check):
     longest = f"spec s\nsignal p : bool\nrequirement R\n  always within {2**62 - 1} ns p\n"
     texts = (EVERYTHING, DIAGRAM, longest)
     assert [check(packed(text).data) for text in texts] == [-1] * 3
@@ -233,7 +233,7 @@ def test_the_core_takes_what_is_packed(check):
 
 
 @pytest.mark.compiler
-def test_the_core_refuses_what_measures_lead_out_of_their_bounds(check):
+def test_the_core_refuses_measures_that_refer_out_of_bounds(check):
     data = packed(EVERYTHING, measured=True).data
     plan = Plan(data)
     for name, skipped in (("MARGINS", {"spare"}), ("MEASURES", {"factor", "turned", "spare"})):
@@ -248,8 +248,8 @@ def test_the_core_refuses_what_measures_lead_out_of_their_bounds(check):
 
 
 @pytest.mark.compiler
-def test_values_are_captured_by_one_part_for_each_requirement(check):
-    """So who embeds the core can be told how many values an attempt of a requirement has."""
+def test_one_part_captures_the_values_of_each_requirement(check):
+    """Programs that embed the core rely on it to know how many values an attempt has."""
     text = "spec s\nsignal x : real\nevent e\n" + "".join(
         f"requirement R{number}\n  upon e then x > v\n  let v = x\n" for number in range(2)
     )
@@ -265,8 +265,8 @@ def test_values_are_captured_by_one_part_for_each_requirement(check):
 
 
 @pytest.mark.compiler
-def test_a_watch_that_its_node_does_not_tell_is_refused(check):
-    """It would keep the truth that it had when a snapshot was read."""
+def test_a_watch_without_a_link_from_its_node_is_refused(check):
+    """It would keep the truth value it had when a snapshot was loaded."""
     data = pack(Bins(rvmon.loads(COUNTED).checked).plan).data
     plan = Plan(data)
     links = [link for link in plan.records["LINKS"] if link["kind"] == 8]
@@ -280,7 +280,7 @@ def test_a_watch_that_its_node_does_not_tell_is_refused(check):
 
 @pytest.mark.compiler
 def test_a_plan_of_too_many_fields_is_refused(check):
-    """Sizes of what is kept of them stay within 32 bits."""
+    """Their sizes must stay within 32 bits."""
     data = packed("spec s\nsignal p : bool\nevent e(k: int)\nrequirement R\n  always p\n").data
     end = Plan(data).places[Section.FIELD_FIRST][1]
     place = sections.HEADER.size - 4 * 4
@@ -290,7 +290,7 @@ def test_a_plan_of_too_many_fields_is_refused(check):
 
 
 @pytest.mark.compiler
-def test_a_constant_that_is_no_number_is_refused(check):
+def test_a_nan_constant_is_refused(check):
     text = "spec s\nsignal x, y : real\nrequirement R\n  always x < y + 0.25\n"
     data = packed(text).data
     at = data.index(struct.pack("=d", 0.25), *Plan(data).places[Section.NUMBERS])
@@ -299,7 +299,6 @@ def test_a_constant_that_is_no_number_is_refused(check):
 
 
 def test_whole_numbers_beyond_64_bits_are_refused_unless_they_are_doubles():
-    """A power of two is a double; its neighbour is not."""
     text = "spec s\nsignal n : int\nrequirement R\n  always n < {}\n"
     (number,) = Plan(packed(text.format(2**70)).data).records["NUMBERS"][-1:]
     assert number["kind"] == 2

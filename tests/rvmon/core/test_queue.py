@@ -1,4 +1,4 @@
-"""Open attempts stand in a queue, or move in runs, and are decided as the law has it."""
+"""Open attempts that the core keeps in a queue, or moves in runs, agree with the law."""
 
 import random
 
@@ -18,10 +18,10 @@ REQUIRED = [
     "(F[0 ns, 6 ns] p) U[0 ns, 20 ns] (G[0 ns, 6 ns] q)",
     "p U (q U[3 ns, 6 ns] not p)",
 ]
-"""Nested so that they reset clocks at their triggers, at changes, and at each tick."""
+"""Nested so that clocks are reset at triggers, at changes, and at each tick."""
 
 IN_RUNS = ["F[0 ns, 40 ns] p", "F[7 ns, 40 ns] p", "p U[2 ns, 30 ns] q", "G[0 ns, 25 ns] not p"]
-"""With one clock, from the trigger: attempts are moved in runs."""
+"""Formulas whose only clock starts at the trigger: attempts are moved in runs."""
 
 
 TRACES = TraceProfile(samples=40, fewest=30, span=90)
@@ -30,7 +30,7 @@ WHEN = ["upon e", "whenever p", "whenever q or e"]
 
 @pytest.mark.law
 @pytest.mark.parametrize("time", ["held", "sampled", "sampled every 3 ns"])
-def test_attempts_in_a_queue_are_judged_as_one_by_one(time):
+def test_attempts_in_a_queue_agree_with_the_law(time):
     compiler, forms = Compiler(), (*FORMS, "c+interrupt")
     for required in (*REQUIRED, *IN_RUNS):
         for when in WHEN if required in REQUIRED else WHEN[:1]:

@@ -1,4 +1,4 @@
-"""Cases that random ones seldom meet: each needs a line of the core that little else does."""
+"""Cases that random ones seldom hit: each reaches a line of the core that few others reach."""
 
 from collections.abc import Callable
 from functools import lru_cache
@@ -26,7 +26,7 @@ Make = Callable[[], Case]
 
 @lru_cache(1)
 def checked(text: str) -> CheckedSpec:
-    """A specification; that of one case serves the next."""
+    """The checked specification, shared by successive cases with the same text."""
     return rvmon.loads(text).checked
 
 
@@ -38,9 +38,15 @@ def case_of(
     lost: tuple[tuple[str, int, int], ...] = (),
     names: str | None = None,
 ) -> Make:
-    """A case of one requirement, or of several, made when it is judged.
+    """A case of one requirement or several, made when it is judged.
 
-    What was `lost` are names in one word, first and last instant; `names` are those with a source.
+    Args:
+        time: the time model.
+        required: the body of the requirement.
+        told: the trace, as `actions` reads it.
+        end: end of the trace, if known.
+        lost: outages: names of one letter each, in one word; first and last instant.
+        names: names that have a source, in one word; `None`: all.
     """
     text = f"time {time}\n{NAMES}requirement R\n  {required}\n"
     outages = tuple(Outage(frozenset(own), first, last) for own, first, last in lost)
@@ -49,47 +55,47 @@ def case_of(
 
 
 CASES = {
-    "what can hold nowhere, were its window open at once": case_of(
+    "a window after 0 of what can hold nowhere": case_of(
         "held", "whenever true then e xor (true R[1 ns, 1 ns] false)", "0 e; 5; 9 e"
     ),
     "two readings with clocks of different ages in one location": case_of(
         *("held", "upon e then G[0 ns, 20 ns] (p -> F[0 ns, 3 ns] q)"),
         *("0 e -p -q; 1 ?p; 2 -p; 3 p; 4 -p; 5 q; 6 -q", 30),
     ),
-    "an occurrence that is unknown, beside a signal without a value": case_of(
+    "an unknown occurrence is compared with a signal without a value": case_of(
         "sampled", "upon g.k > x then false", "0 ?g; 1; 2 x=1"
     ),
-    "and one of which the field alone is": case_of(
+    "an unknown field is compared with a signal without a value": case_of(
         "sampled", "upon g.k > x then false", "0 g=?; 1; 2 x=1"
     ),
-    "a requirement of a network that fails again and again while nothing is said": case_of(
+    "a network fails again and again during a silence": case_of(
         *("held", "whenever p then F[1 ns, 2 ns] G[0 ns, 1 ns] H[0 ns, 3 ns] q"),
         *("0 p -q; 40!; 50 q", 60),
     ),
-    "windows within windows, decided by a sample before 0": case_of(
+    "nested windows are decided by a sample before 0": case_of(
         "held", "upon start then F[1 ns, 1 ns] F[1 ns, 1 ns] p", "-3 p; -1; 6"
     ),
     "a captured value of an episode whose trigger was unknown": case_of(
         *("held", "whenever p then F[0 ns, 4 ns] x > v let v = x"),
         *("0 p x=1; 2 ?p x=2; 3 -p; 6 p; 8 x=3; 9 -p", 20),
     ),
-    "windows that are open at the end of what is kept up": case_of(
+    "nested windows are open at the end of an episode": case_of(
         *("held", "whenever q then G[0 ns, 5 ns] F[1 ns, 7 ns] p", "0 -q; 9 p ?q; 11 -q; 12!; 18 q")
     ),
-    "the same by a clock": case_of(
+    "nested windows are open at the end of an episode, with a clock": case_of(
         *("sampled every 2 ns", "whenever q then F[0 ns, 3 ns] F[2 ns, 5 ns] p"),
         *("1 -p; 3 q; 6 p", 11),
     ),
-    "what is kept up to a sample, which says when all of it is known": case_of(
+    "an episode ends at a sample, and its windows are known later": case_of(
         "sampled", "whenever q then F[0 ns, 9 ns] G[0 ns, 3 ns] p", "1 p q; 2; 11 -q; 16; 28"
     ),
-    "what is always kept up, to an end that is known": case_of(
+    "an invariant of nested windows runs to a known end": case_of(
         "held", "always G[0 ns, 0 ns] F[0 ns, 3 ns] p", "1 -p; 5 p", 8
     ),
 }
 
 CASES |= {
-    f"instances made anew in another order, {time}, their trigger: {known}": case_of(
+    f"instances are made again in another order, {time}, trigger {known or 'known'}": case_of(
         *(time, "upon g and p then F[2 ns, 4 ns] q for each key in g.k"),
         *(f"0 -p -q g=1; 6 g=2; 12 g=3; 24 {known}p g=3,2,1; 36 ?p q", 40),
     )
@@ -97,7 +103,7 @@ CASES |= {
 }
 
 CASES |= {
-    f"an episode with a value, clouded and undecided, at end: {policy}": case_of(
+    f"an episode with a captured value is in doubt and undecided, at end: {policy}": case_of(
         *("held", f"whenever p then F[0 ns, 40 ns] (q and x > v)\n  at end: {policy}\n  let v = x"),
         *("0 p -q x=1; 2 ?p x=2; 3 p", 9),
     )
@@ -105,7 +111,7 @@ CASES |= {
 }
 
 CASES |= {
-    f"the future below the past, though a constant: no other attempt follows, {time}": case_of(
+    f"a constant future below the past, so that no second attempt follows, {time}": case_of(
         time, "whenever true then p U[0 ns, 0 ns] fall(F[0 ns, 0 ns] true)", "0 p; 6; 9"
     )
     for time in ("held", "sampled", "sampled every 2 ns")
@@ -152,13 +158,13 @@ CASES |= {
         "sampled every 3 ns", f"{required} for each key in g.k", told
     )
     for required, told in (
-        # What the trigger was at the last tick is not what came behind that.
+        # The trigger at the last tick does not see what came after that tick.
         ("upon p or g.k == key then true", "0; 2 ?g; 3 g=1"),
         ("upon p or g.k == key then true", "0 g=?; 1; 3 g=1"),
-        # Nor is it where the trigger is an edge only because the past of it never holds.
+        # The same where the trigger is an edge only because its past never holds.
         ("upon (once[1 ns, 1 ns] true) or g.k == key then true", "0 ?g; 2; 3 g=0"),
         ("upon (once[1 ns, 1 ns] true) or g.k == key then true", "0; 1 g; 2 g=1; 9"),
-        # What came since the last tick did not occur at it.
+        # What came since the last tick did not occur at that tick.
         ("upon g then key >= h.m", "0; 4 h=/0; 5 g=0; 7"),
     )
 }
@@ -166,25 +172,25 @@ CASES |= {
 CASES |= {
     f"an instance, {time}: {required}, {told}": case_of(time, required, told)
     for time, required, told in (
-        # The numbers 1 and 1.0 are one.
+        # The numbers 1 and 1.0 are the same key.
         ("held", "upon e then eventually h.m == key for each key in g.k", "0 e g=1; 1; 2 h=/1"),
         ("held", "upon e then eventually g.k == key for each key in h.m", "0 e h=/1; 1; 2 g=1"),
         # The trigger comes first, then the value of `for each`, both before a tick of the clock.
         ("sampled every 3 ns", "upon e then true for each key in g.k", "10 e; 11 g=-2; 15"),
-        # Of those that are sure at once the one that began first has the lower number.
+        # Of attempts that become certain together the earlier one has the lower number.
         (
             *("sampled", "whenever p or g.k == n then F[1 ns, 1 ns] true for each n in g.k"),
             "0 -p; 1 g=-1; 16 g=1; 27 ?p g=-1; 32 p",
         ),
-        # It looks back to the first position of the run, where nothing started yet.
+        # It looks back to the first position of the run, before any attempt started.
         ("sampled", "upon g then (previous (next true)) for each n in g.k", "0; 1 g=0"),
-        # Of what has no value yet the trigger is unknown, and no other occurs at any position.
+        # Without a value of `x` the trigger is unknown, and nothing else triggers.
         ("sampled every 2 ns", "upon x != n then true for each n in g.k", "0 x=0; 3 g=0"),
     )
 }
 
 CASES |= {
-    f"an instance that looks back knows what has no source, {time}, {told}": case_of(
+    f"an instance looks back at a name without a source, {time}, {told}": case_of(
         *(time, "upon p and g then once[0 s, 10 ns] (within 10 ns p) for each k in g.k"),
         *(told, None, (), "g"),
     )
@@ -193,14 +199,14 @@ CASES |= {
 }
 
 CASES |= {
-    f"what has no source may have been true in a trigger, {time}: {trigger}": case_of(
+    f"a name without a source may have triggered, {time}: {trigger}": case_of(
         *(time, f"upon {trigger} then not p", "0 p; 1 p", None, (), "p")
     )
     for time in ("held", "sampled")
     for trigger in ("p and q", "p and not q", "not p and q", "q since[1 ns, inf) p")
 }
 
-CASES["a window over what can never be is captured all the same"] = case_of(
+CASES["a captured window over an operand that never holds"] = case_of(
     "sampled every 3 ns",
     "upon start then immediately 1 <= v\n"
     "  let v = 1 + integral(if once[2 ns, 2 ns] p then max(x, x) else 0, 3 ns) / 1 s",
@@ -210,12 +216,12 @@ CASES["a window over what can never be is captured all the same"] = case_of(
 CASES |= {
     f"lost of `{lost[0][0]}`, {time}: {required}": case_of(time, required, told, end, lost)
     for time, required, told, end, lost in (
-        # What was lost may have been of any key; a value beside it that is known is of one.
+        # A lost event may have had any key; the known one at the same instant has one key.
         (
             *("sampled every 2 ns", "upon g then within 6 ns updated(g) for each k in g.k"),
             *("3; 15 g=1", 16, (("g", 9, 15),)),
         ),
-        # Every formula is unknown there, constants too; but it makes no number a member.
+        # All formulas are unknown in an outage, even constants; but no member comes of that.
         *(
             ("sampled", f"upon g then {amount}", "2 g=2", None, (("", 1, 1),))
             for amount in (
@@ -223,12 +229,12 @@ CASES |= {
                 "sum(if g.k > 1 and false then g.k else 0, 2 ns) > 0",
             )
         ),
-        # Nor does a signal that is known have its value at a position that may be none.
+        # Nor does a known signal count at a position that may not exist.
         *(
             ("sampled", f"always {amount} <= 2", "0 x=3; 4 x=1", 8, (("q", 1, 1),))
             for amount in ("sum(x, 9 ns)", "integral(x, 9 ns) / 1 ns")
         ),
-        # Time makes enough of what may be a member since the loss: no trigger is missed.
+        # What may have been a member since the outage reaches the limit by time alone.
         *(
             (
                 *("held", f"upon integral(if p then x else 0{window}) >= 2 ns then false"),
@@ -236,7 +242,7 @@ CASES |= {
             )
             for window in ("", ", 5 ns")
         ),
-        # Each edge has an attempt, whatever is known of what it owes.
+        # Each edge starts an attempt, whatever is known of its consequent.
         (
             *("held", "upon q then mean(h.m, 3 ns) > x"),
             *("5 q; 14 x=0; 17 -q; 23 q", 23, (("x", 23, 23),)),
@@ -251,23 +257,23 @@ CASES |= {
         ("upon max(x, 3 ns) <= x then false", "0 x=5; 1 x=3"),
         ("upon x + 2 <= ago(x, 3 ns) then false", "0 x=5; 1 x=3"),
         ("always count(e, 10 ns) < 3", "0 e; 1 ?e; 2 e"),
-        # What is unknown may be one more number, for ever.
+        # An unknown value may be one more distinct number, for good.
         ("always distinct(x) <= 2", "0 x=1; 1 ?x; 2 x=2"),
         *(
             ("always sum(if p then h.m else 0, 10 ns) <= 5", f"0 p h=/{m}; 1 ?p h=/3")
             for m in (2, 3, 6)
         ),
-        # What hangs on `now` in doubt is known no longer at the next tick.
+        # A comparison with a doubtful `now` is unknown again at the next tick.
         ("upon p then immediately now <= t0 let t0 = now", "1 -p; 3 ?p; 7 -p"),
     )
 }
 
-CASES["a variance goes on along a curve while nothing is said"] = case_of(
+CASES["a variance follows a curve during a silence"] = case_of(
     "sampled every 2 ns", "always variance(x, 9 ns) <= 0.5", "0 x=3; 4 x=1; 20", 45
 )
 
 CASES |= {
-    f"no window of the past holds what was before the trace, {time}": case_of(
+    f"a window of the past holds nothing from before the trace, {time}": case_of(
         time, "upon start then historically[0 ns, 5 ns] once F[0 ns, 3 ns] q", "0 -q; 1; 2 q"
     )
     for time in ("held", "sampled", "sampled every 2 ns")
@@ -276,14 +282,14 @@ CASES |= {
 BESIDE = "\nrequirement Q upon e then true"
 
 MANY = {
-    "the end is told from how far time came: a window may open, or be over, behind it": [
+    "windows open or close after the last call but before the end": [
         case_of(time, f"upon start then {required}", f"0 p -q; 3; {until}!", end)
         for time in ("held", "sampled", "sampled every 2 ns")
         for required in ("G[5 ns, inf) p", "F[0 ns, 5 ns] q", "(G[5 ns, inf) p) or F[2 ns, 4 ns] q")
         for until in (3, 9)
         for end in (None, 6, 12)
     ],
-    "what is captured at the end is what the last tick saw, not what came behind it": [
+    "at the end, values are captured at the last tick, not after it": [
         case_of(
             *("sampled every 4 ns", f"upon end then {required}"),
             *(f"-2 x=1 g=1; 1 p g=2; {between}4 x=2 g=1; 6 g=3; 7 ?x -p g=4", end),
@@ -299,7 +305,7 @@ MANY = {
         for between in ("", "2!; ", "4!; ")
         for end in (7, 11)
     ],
-    "an episode goes on at once while an older one is open: it fails while nothing is said": [
+    "an episode fails during a silence while an older one is open": [
         case_of(
             *(time, f"whenever p then {required} and F[3 ns, {last} ns] q{BESIDE}"),
             *(f"0 p q x=0; 2 -p; 4 p; 6 -q; {told}32", 45),
@@ -309,7 +315,7 @@ MANY = {
         for last in (4, 5)
         for told in ("", "12!; ", "20!; ")
     ],
-    "windows over several propositions, as an `until` of nothing leaves them": [
+    "nested windows over several propositions, as `false until q` leaves them": [
         case_of(
             *(time, f"{mode} then F[0 ns, 6 ns] G[1 ns, 4 ns] {base}"),
             *("0 p -q e; 2 q e; 5 ?p; 8 p; 9 -p ?q e; 20 q", 32),
@@ -322,9 +328,9 @@ MANY = {
 
 
 def round_case(time: str, required: str, gap: int) -> Make:
-    """A case in which an attempt is always open, and values change within the reach of its windows.
+    """A case in which an attempt is always open, and values change within its windows.
 
-    While none is open, what is known of windows within windows begins anew: no ring goes round.
+    Without an open attempt the rings of nested windows are cleared, and never wrap around.
     """
     told = "; ".join(
         f"{t} {'' if t % gap else '-'}p{' e' * (t % 5 == 0)}" for t in range(0, 72, 1 + (gap > 2))
@@ -332,7 +338,7 @@ def round_case(time: str, required: str, gap: int) -> Make:
     return case_of(time, required, told, 90)
 
 
-MANY["what is over of windows within windows is dropped from the rings, which go round"] = [
+MANY["the rings of nested windows drop what is over, and wrap around"] = [
     round_case(time, required, gap)
     for time in ("held", "sampled", "sampled every 2 ns")
     for required, gap in (
@@ -342,7 +348,7 @@ MANY["what is over of windows within windows is dropped from the rings, which go
     )
 ]
 
-MANY["what only starts attempts, at ticks beside each other and apart, known and unknown"] = [
+MANY["attempts start at adjacent and at distant ticks, by known and unknown triggers"] = [
     case_of(
         *(time, f"upon {trigger} then {required}"),
         "0 -p e g=1 x=1; 1 e; 2 g=1 p; 5 e ?p x=1; 6 ?e; 7 e g=?; 9 -p; 10 e g=1 x=2; 13 p e; 17!; "
@@ -363,7 +369,7 @@ MANY["what only starts attempts, at ticks beside each other and apart, known and
 
 @pytest.mark.law
 @pytest.mark.parametrize("name", CASES)
-def test_a_rare_case_is_judged_as_the_law_has_it(name: str) -> None:
+def test_a_rare_case_agrees_with_the_law(name: str) -> None:
     case, compiler = CASES[name](), Compiler()
     for form in FORMS:
         assert disagreements(case, Maker(form, compiler), online=True) == [], form
@@ -371,7 +377,7 @@ def test_a_rare_case_is_judged_as_the_law_has_it(name: str) -> None:
 
 @pytest.mark.law
 @pytest.mark.parametrize("name", MANY)
-def test_many_of_a_kind_are_judged_as_the_law_has_it(name: str) -> None:
+def test_many_cases_of_a_kind_agree_with_the_law(name: str) -> None:
     maker = Maker("c")
     for make in MANY[name]:
         assert disagreements(make(), maker, online=True) == []

@@ -1,4 +1,4 @@
-"""Recordings that the core judges: as the law has it, what is refused, what is missing."""
+"""Recordings in rows that the core judges."""
 
 import random
 
@@ -39,7 +39,7 @@ WRONG = {
 
 
 @each(("name", "value"), [(name, one) for name, values in WRONG.items() for one in values])
-def test_values_of_another_type_are_refused(name, value):
+def test_a_value_of_the_wrong_type_in_a_column_is_refused(name, value):
     spec = spec_of(DECLARED, "always (x < 5 or n > 2 or b or mode == red or e or pay.k > 2)")
     trace = {"t": [0.0, 1.0], name: [None, value]}
     with pytest.raises(rvmon.TraceError, match=rf"sample at 1 s: .*`{name}"):
@@ -47,8 +47,8 @@ def test_values_of_another_type_are_refused(name, value):
 
 
 @pytest.mark.law
-def test_long_recordings_say_in_rows_what_their_samples_say():
-    """Rows in which nothing changes are passed over; what is lost ends a block."""
+def test_long_recordings_are_judged_alike_by_rows_and_by_samples():
+    """The core skips rows in which nothing changes; an outage ends a block of rows."""
     compiler, judged = Compiler(), 0
     traces = TraceProfile(samples=300, fewest=100, span=900, outages=20)
     for seed in range(12):
@@ -63,7 +63,7 @@ def test_long_recordings_say_in_rows_what_their_samples_say():
 
 @pytest.mark.parametrize("limit", [0, 2, 2.5, 2**53 + 1, -(2**62) + 1, 1e19])
 @pytest.mark.parametrize("kind", ["int", "real"])
-def test_rows_in_which_no_comparison_changes_are_those_that_are_passed_over(kind, limit):
+def test_no_row_that_changes_a_comparison_is_skipped(kind, limit):
     required = "".join(
         f"requirement R{n}\n  always x {op} {limit}\n" for n, op in enumerate(("<", "<=", "=="))
     )

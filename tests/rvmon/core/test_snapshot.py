@@ -1,4 +1,4 @@
-"""A run of the core as bytes, and from them: nothing is lost, and no bytes do harm."""
+"""Snapshots of a run of the core: loading one loses nothing, and no bytes do harm."""
 
 import random
 import struct
@@ -6,8 +6,8 @@ from collections import Counter
 from typing import Any
 
 import pytest
-from tests.rvmon.core.put_away import HEAD, Twins, put_away
 from tests.rvmon.core.test_outages import planned
+from tests.rvmon.core.twins import HEAD, Twins, reload_after_each_call
 from tests.tools.differential import case_of
 from tests.tools.drive import Found, Lost
 from tests.tools.forms import Compiler
@@ -31,52 +31,44 @@ requirement R5 whenever mean(x, 5 ns) >= 1 or count(g, 6 ns) >= 3
 """
 
 
-ALL: frozenset[str] = frozenset()
-"""All names have a source."""
-
-
 @pytest.mark.law
 @pytest.mark.parametrize("outages", [False, True])
-@pytest.mark.parametrize("time", [TimeModel.HELD, TimeModel.SAMPLED, TimeModel.CLOCKED])
-def test_a_run_taken_up_again_goes_on_alike(time, outages):
-    """Of some requirements, with keys and captured values; names may be lost."""
-    compile_, taken = Compiler(), 0
+@pytest.mark.parametrize("time", TimeModel)
+def test_a_loaded_run_goes_on_like_the_saved_one(time, outages):
+    compile_, reloads = Compiler(), 0
     for number in range(12):
         profile = Profile(requirements=1 + number % 4, time=time)
         one = case_of(f"away/{time}/{number}", profile, TraceProfile(outages=100 * outages))
-        taken += put_away(compile_(one.spec), one)
-    assert taken > 70
+        reloads += reload_after_each_call(compile_(one.spec), one)
+    assert reloads > 70
 
 
-def test_a_run_whose_first_position_may_not_be_there_is_taken_up_again():
-    """What was lost before the first sample comes back at a tick that lies behind that position."""
+def test_a_run_with_a_doubtful_first_position_can_be_loaded():
+    """A name lost before the first sample comes back at a tick after that position."""
     text = "requirement R\n  upon start\n  then updated(x) or q\n"
-    plan = planned(text, "sampled every 4 ns")
-    twins = Twins(plan, frozenset())
-    for action in (Lost(("x",), -2), Found(("x",), -2), Sample(1, {}), Sample(3, {"q": True})):
+    twins = Twins(planned(text, "sampled every 4 ns"))
+    for action in (Lost(("x",), -2), Found(("x",), -2), Sample(1, {}), Sample(3, {"q": True}), 9):
         twins.tell(action)
-        twins.take_up()
-    twins.tell(9)
     twins.finish(12)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("time", ["held", "sampled", "sampled every 127 ns"])
 @pytest.mark.parametrize("begin", [1 - (1 << 62), (1 << 62) - 200])
-def test_what_is_asked_for_may_lie_behind_the_bounds_of_time(time, begin):
-    """Two windows of a century lead there; a clock's first position lies before its first stamp."""
+def test_windows_may_reach_beyond_the_bounds_of_time(time, begin):
+    """So do two nested windows of a century, and the first tick of a clock before its stamp."""
     far = "always[900000 h, 1000000 h] (eventually[600000 h, 700000 h] q)"
-    twins = Twins(planned(f"requirement R\n  upon rise(q)\n  then p until ({far})\n", time), ALL)
+    twins = Twins(planned(f"requirement R\n  upon rise(q)\n  then p until ({far})\n", time))
     for t in range(begin, begin + 190, 19):
         twins.tell(Sample(t, {"q": t % 2 == 0, "p": True, "x": 1.0}))
     twins.finish(None)
 
 
-def test_why_a_value_is_unknown_is_part_of_it():
-    """A sample that waits for its tick, and what is kept for those that look back, say NaN."""
+def test_a_snapshot_says_why_a_value_is_unknown():
+    """NaN stays NaN in a sample that waits for its tick, and in values kept for the past."""
     text = "requirement R\n  upon end\n  then once x > value\n  let value = x\n"
     plan = planned(text, "sampled every 4 ns")
-    twins = Twins(plan, ALL)
+    twins = Twins(plan)
     twins.tell(Sample(0, {"x": 1.0}))
     twins.tell(Sample(5, {"x": float("nan")}))
     twins.finish(30)
@@ -85,8 +77,8 @@ def test_why_a_value_is_unknown_is_part_of_it():
 
 
 def run_of(planned_: PlannedCore, rng: random.Random, steps: int) -> Twins:
-    """Two runs that have come somewhere, of which one was taken up again on the way."""
-    twins = Twins(planned_, frozenset())
+    """Two runs after some random steps, of which one was reloaded at each."""
+    twins = Twins(planned_)
     t = 0
     for _ in range(steps):
         t += rng.randint(1, 4)
@@ -122,7 +114,7 @@ def test_changed_bytes_are_refused(time):
 
 
 def sealed(body: bytes, head: bytes) -> bytes:
-    """A snapshot with the size and the hash of what stands behind its head."""
+    """A snapshot of a body, with the right size and hash in its header."""
     hash_ = 0xCBF29CE484222325
     for one in body:
         hash_ = (hash_ ^ one) * 0x100000001B3 & 0xFFFFFFFFFFFFFFFF
@@ -130,7 +122,7 @@ def sealed(body: bytes, head: bytes) -> bytes:
 
 
 def forged(data: bytes, rng: random.Random) -> bytes:
-    """A snapshot that was changed somewhere, with a hash that fits."""
+    """A snapshot that was changed at random places, with a matching hash."""
     body = bytearray(data[HEAD:])
     for _ in range(rng.randint(1, 3)):
         place = rng.randrange(len(body))
@@ -152,17 +144,16 @@ def forged(data: bytes, rng: random.Random) -> bytes:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("time", ["held", "sampled every 2 ns"])
-def test_forged_bytes_do_no_harm(time):
-    """Bytes with a hash that fits are refused, or give a run that can be led to its end."""
+def test_forged_bytes_are_refused_or_give_a_run_that_works(time):
     plan = planned(REQUIREMENTS, time)
     rng = random.Random(time)
     data = run_of(plan, rng, 12).plain.save()
     outcomes: Counter[bool] = Counter()
     for _ in range(500):
         made = plan.monitor(frozenset())
-        taken = made.load(forged(data, rng))
-        outcomes[taken] += 1
-        if taken:
+        is_loaded = made.load(forged(data, rng))
+        outcomes[is_loaded] += 1
+        if is_loaded:
             _, _, reached = made.times()
             again = made.save()
             other = plan.monitor(frozenset())
@@ -177,7 +168,7 @@ def test_forged_bytes_do_no_harm(time):
     assert min(outcomes.values()) > 15, outcomes
 
 
-def test_names_without_a_source_are_part_of_it():
+def test_a_snapshot_says_which_names_have_no_source():
     plan = planned("requirement R1\n  upon start\n  then eventually[2 ns, 2 ns] p")
     absent = plan.monitor(frozenset({"p"}))
     made = plan.monitor(frozenset())

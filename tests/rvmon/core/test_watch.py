@@ -1,4 +1,4 @@
-"""What the core keeps beside what becomes of attempts."""
+"""What the core records besides verdicts: truths, hits of coverage bins, and moves of attempts."""
 
 import struct
 
@@ -27,7 +27,7 @@ AHEAD = "signal p : bool\nsignal x : real\nrequirement R\n  upon p\n  then withi
 
 
 def truths(text, values, end):
-    """Where what the requirement owes is surely true, and surely false."""
+    """Where the consequent is known to be true, and where to be false."""
     checked = rvmon.loads(text).checked
     consequent = checked.requirements["R"].consequent
     core = Lowering(Factory(), checked.period, False).core(consequent, True)
@@ -43,11 +43,11 @@ AT_START = "signal p : bool\nrequirement R\n  upon start\n  then p\n"
 @each(
     ("text", "values", "end", "expected"),
     [
-        # What looks ahead is known where the recording decides it: of its last instants it is not.
+        # A future formula is known where the recording decides it, so not at its last instants.
         (f"time held\n{AHEAD}", VALUES, 12, (((4, 9),), ((2, 3),))),
         (f"time sampled every 2 ns\n{AHEAD}", VALUES, 12, (((3, 4),), ((1, 2),))),
         (f"time sampled\n{AHEAD}", VALUES, 12, (((1, 1),), ((0, 0),))),
-        # An unknown value is neither true nor false: it ends what is known.
+        # An unknown value is neither true nor false.
         (
             *(AT_START, {0: {"p": True}, 4: {"p": None}, 6: {"p": False}}),
             *(8, (((0, 3),), ((6, 8),))),
@@ -59,7 +59,7 @@ def test_truths_reach_as_far_as_they_are_known(text, values, end, expected):
 
 
 def truths_run(text):
-    """A run that keeps truths, and the place of the only one."""
+    """A run that records the truth of one formula, and the formula's place."""
     checked = rvmon.loads(text).checked
     plan = truths_plan(compile_spec(checked))
     planned = planned_as(checked, (), Kept(pack(plan).data, frozenset(), frozenset()))
@@ -67,7 +67,7 @@ def truths_run(text):
     return planned.monitor(frozenset()), place
 
 
-def test_another_run_begins_anew():
+def test_a_reset_clears_the_truths():
     run, place = truths_run(AT_START)
     seen = []
     for values in ([None, True], [True, None], [None, True]):
@@ -95,14 +95,14 @@ cross all = level, often
 
 
 def bins(text, **law):
-    """What the core counts by, and the plan of it."""
+    """The bins of a specification, and their plan."""
     made = Bins(rvmon.loads(text).checked)
     data = pack(made.plan, **law).data
     return made, planned_as(made.spec, (), Kept(data, frozenset(), frozenset()))
 
 
 def changed(data, section, record, name, value):
-    """A plan with another number in a record."""
+    """A plan whose first record in a section has other numbers in a field."""
     fields = layouts()[record]
     names = [one for one, _ in fields]
     before = "".join(form for _, form in fields[: names.index(name)])
@@ -110,7 +110,7 @@ def changed(data, section, record, name, value):
     return with_numbers(data, {at + 4 * number: one for number, one in enumerate(value)})
 
 
-def is_taken(data):
+def is_accepted(data):
     checked = rvmon.loads(BINS).checked
     planned = planned_as(checked, (), Kept(data, frozenset(), frozenset()))
     try:
@@ -141,16 +141,16 @@ WRONG = {
 
 
 @each("place", WRONG)
-def test_what_leads_nowhere_is_refused(place):
+def test_a_plan_of_bins_with_dangling_references_is_refused(place):
     section, record = place
     data = pack(Bins(rvmon.loads(BINS).checked).plan).data
-    assert is_taken(data)
+    assert is_accepted(data)
     for name, values in WRONG[place].items():
         for value in values:
-            assert not is_taken(changed(data, Section[section], record, name, value)), name
+            assert not is_accepted(changed(data, Section[section], record, name, value)), name
 
 
-def test_axes_that_are_none_are_refused():
+def test_a_cross_with_wrong_or_too_many_axes_is_refused():
     data = pack(Bins(rvmon.loads(BINS).checked).plan).data
     plan = Plan(data)
     first, count = plan.records["GROUPS"][-1]["axes"]
@@ -158,7 +158,7 @@ def test_axes_that_are_none_are_refused():
     assert (count, plan.run("LISTS", first, count)) == (4, (0, 2, 2, 2))
     for axes in ((0, 0, 2, 2), (-1, 2, 2, 2), (6, 2, 2, 2), (0, 2, 2, 1 << 30)):
         wrong = with_numbers(data, {at + 4 * number: one for number, one in enumerate(axes)})
-        assert not is_taken(wrong)
+        assert not is_accepted(wrong)
     made = Bins(rvmon.loads(BINS).checked).plan
     large = replace(made, groups=(WatchGroup((range(7),) * 8, None),))
     with pytest.raises(RvmonError, match="combinations"):
@@ -166,12 +166,12 @@ def test_axes_that_are_none_are_refused():
 
 
 def counts(made, run):
-    """How often each bin was hit, by what it is of."""
+    """Hits of each bin, by coverpoint or cross."""
     hits = made.hits(run.hits())
     return {name: {item: one.count for item, one in own.items()} for name, own in hits.items()}
 
 
-def test_hits_begin_anew_with_each_run():
+def test_a_reset_clears_the_hits():
     made, planned = bins(BINS)
     run = planned.monitor(frozenset())
     for _ in range(2):
@@ -183,8 +183,8 @@ def test_hits_begin_anew_with_each_run():
         run.reset()
 
 
-def test_hits_go_on_behind_a_snapshot():
-    """A bin that was true before is one of a combination that is hit behind it."""
+def test_a_loaded_run_goes_on_counting_hits():
+    """A bin that was true before the snapshot is part of a cross hit after it."""
     made, planned = bins(BINS)
     run = planned.monitor(frozenset())
     assert run.judge(0, {"p": True, "q": False}, True)
@@ -195,7 +195,7 @@ def test_hits_go_on_behind_a_snapshot():
     assert counts(made, again)["asked"] == {"yes": 1}
 
 
-def test_what_comes_too_late_is_not_counted():
+def test_a_late_sample_hits_no_bin():
     made, planned = bins(BINS)
     run = planned.monitor(frozenset())
     assert run.judge(0, {"p": True, "q": False}, True)
@@ -205,8 +205,8 @@ def test_what_comes_too_late_is_not_counted():
 
 
 @pytest.mark.parametrize("time", ["held", "sampled", "sampled every 1 ns"])
-def test_what_is_lost_hits_nothing_and_ends_nothing(time):
-    """Behind an outage it is not known when an occasion came, nor that a stretch had ended."""
+def test_an_outage_hits_no_bin_and_ends_no_stretch(time):
+    """After an outage nobody knows when an occasion came, nor whether a stretch had ended."""
     made, planned = bins(f"time {time}\n{BINS}")
     run = planned.monitor(frozenset())
     assert run.judge(0, {"p": True, "q": False}, True)
@@ -225,7 +225,7 @@ MANY = "signal a, b : bool\nrequirement {0}\n  upon a\n  then within {1} s b\n"
 
 
 def traced(text):
-    """The plan of requirements of which it is asked where attempts go."""
+    """The plan of requirements whose attempts are traced through their automata."""
     compiled = compile_spec(rvmon.loads(text).checked)
     plan = plan_alone(compiled, traced=list(compiled.requirements))
     data = pack(plan).data
@@ -234,7 +234,7 @@ def traced(text):
 
 
 def moves(run, number):
-    """From which location to which attempts went: how often, and when first."""
+    """How often, and when first, attempts moved from one location to another."""
     locations, counted = run.passages(number)
     return {
         divmod(place, locations): hit
@@ -243,7 +243,7 @@ def moves(run, number):
     }
 
 
-def test_a_segment_adds_its_size():
+def test_a_run_of_attempts_that_moves_together_counts_all_of_them():
     text = MANY.format("R", 3000) + MANY.format("S", 5).partition("\n")[2]
     compiled, data, planned = traced(text)
     one, other = Plan(data).records["AUTOMATA"][:2]
@@ -270,8 +270,8 @@ def test_a_segment_adds_its_size():
     assert moves(run, 0) == {}
 
 
-def test_an_attempt_in_two_minds_goes_nowhere():
-    """Unknown values that make a difference; what makes none is no other letter."""
+def test_an_attempt_whose_letter_is_unknown_makes_no_move():
+    """An unknown value that changes nothing does not make the letter unknown."""
     text = "signal a, b, c : bool\nrequirement R\n  upon a\n  then within 2 s (b and not c)\n"
     compiled, _, planned = traced(text)
     start = compiled.requirements["R"].automaton.initial
@@ -284,7 +284,7 @@ def test_an_attempt_in_two_minds_goes_nowhere():
     assert moves(run, 0)[start, start] == (1, 2)
 
 
-def test_moves_are_counted_in_small_automata_alone():
+def test_moves_are_counted_only_in_small_automata():
     compiled, data, planned = traced(MANY.format("R", 3))
     planned.monitor(frozenset())
     for section, record, name, value in (

@@ -1,4 +1,4 @@
-"""Windows of the past as numbers: the memory that they take, when they are due, their sums."""
+"""Numbers of past windows: the memory they take, when they are due, and their exact sums."""
 
 import random
 from collections import deque
@@ -24,15 +24,15 @@ from rvmon.language.checked.window_measures import Measured
         (Measured.DISTINCT, "distinct(x, 20000 s) > 30000"),
     ],
 )
-def test_members_take_the_memory_that_is_stated(measured, text):
+def test_members_take_the_stated_memory(measured, text):
     spec = rvmon.loads(f"signal x : real\nrequirement R\n  always not {text}\n")
     monitor = spec.monitor()
     monitor.step(0.0, {"x": 0.5})
     begun = monitor._core.memory_used()
-    for t in range(1, 16_400):  # one ring was just made twice as large
+    for t in range(1, 16_400):  # just above a power of two, where the ring has doubled
         monitor.step(float(t), {"x": float(t)})
     taken = monitor._core.memory_used() - begun
-    assert 16 * 16_400 < taken <= measured.each * 16_400 + 6 * 16_384  # and rings before these
+    assert 16 * 16_400 < taken <= measured.each * 16_400 + 6 * 16_384  # with the outgrown rings
 
 
 @each(
@@ -45,7 +45,7 @@ def test_members_take_the_memory_that_is_stated(measured, text):
         ("duration(x > 2) <= 2 s", 4_000_000_001),
     ],
 )
-def test_what_moves_between_samples_is_due_when_it_crosses(required, due):
+def test_a_number_that_changes_between_samples_is_due_when_it_crosses_its_limit(required, due):
     spec = rvmon.loads(f"spec s\nsignal x : real\nrequirement R\n  always {required}\n")
     monitor = spec.monitor()
     monitor.step(0.0, {"x": 1.0})
@@ -59,8 +59,8 @@ def test_what_moves_between_samples_is_due_when_it_crosses(required, due):
     assert failed.decided == due
 
 
-def test_sums_are_those_of_the_numbers_that_there_are():
-    """No order makes another, and nothing is left of what has gone."""
+def test_sums_are_exact():
+    """The order does not matter, and nothing is left of numbers outside the window."""
     spec = rvmon.loads(
         "spec s\nevent e(x: real)\nrequirement R\n  upon e then immediately "
         "(sum(e.x, 3 s) == 1 or sum(e.x, 3 s) < 0)\n"
@@ -71,8 +71,7 @@ def test_sums_are_those_of_the_numbers_that_there_are():
         assert last.verdict.value == "P" if len(values) == 3 else "F"
 
 
-def test_means_and_variances_are_the_nearest_doubles():
-    """Of exact sums, whatever the sizes of the numbers."""
+def test_means_and_variances_are_the_doubles_nearest_to_exact_ones():
     spec = rvmon.loads(
         "spec s\nsignal x : real\nevent e\nrequirement R\n  upon e then immediately not e\n"
         "  let mean = mean(last(7, x))\n  let spread = variance(last(7, x))\n"

@@ -1,4 +1,4 @@
-"""A run of the core that is put away and taken up again at each call, beside one that is not."""
+"""Checks that a run of the core behaves the same when it is saved and loaded after each call."""
 
 from dataclasses import fields
 from typing import Any
@@ -14,47 +14,46 @@ from rvmon.trace.sample import Sample
 from rvmon.verdicts.attempt import Attempt
 
 HEAD = 32
-"""Bytes of the head of a snapshot; the last eight are the hash of what follows."""
+"""Bytes of the header of a snapshot; the last eight are the hash of the body."""
 
 
 class Twins:
-    """Two runs that are told the same; all that they say has to be alike."""
+    """Two runs with the same input, of which one is saved and loaded; their outputs must agree."""
 
-    def __init__(self, planned: PlannedCore, absent: frozenset[str]) -> None:
+    def __init__(self, planned: PlannedCore, absent: frozenset[str] = frozenset()) -> None:
         self._planned = planned
         self.plain: native.Monitor = planned.monitor(absent)
         self.other: native.Monitor = planned.monitor(absent)
-        self.taken = 0
+        self.reloads = 0
 
     def tell(self, action: Sample | int | Lost | Found) -> None:
-        """Tell both, and take one up again from what it is put away as."""
+        """Give both an action, then save and load one of them."""
         said = [tell(self._planned, one, action) for one in (self.plain, self.other)]
         assert said[0] == said[1], f"at {action}: {said}"
-        self.take_up()
+        self.reload()
 
-    def take_up(self) -> None:
-        """Have one run be taken up again by a monitor that was just made."""
+    def reload(self) -> None:
+        """Load the snapshot of one run into a new monitor, which replaces it."""
         data = self.other.save()
         made = self._planned.monitor(frozenset())
-        assert made.load(data), "what it was put away as is refused"
-        assert made.save() == data, "it is put away as something else the second time"
+        assert made.load(data), "the snapshot is refused"
+        assert made.save() == data, "the loaded run has another snapshot"
         self.other = made
-        self.taken += 1
+        self.reloads += 1
         assert _state(self.plain) == _state(self.other)
         *_, letters = self.other.records()
-        if not letters:  # else each of both may share others of them between notes
-            assert self.plain.save() == self.other.save(), "it does not stand as before"
+        if not letters:  # notes share letters, and the two runs may share different ones
+            assert self.plain.save() == self.other.save(), "the runs have different states"
 
     def finish(self, end: int | None) -> None:
-        """End both."""
         assert self.plain.finish(end) == self.other.finish(end)
         assert self.plain.flush() == self.other.flush()
-        self.take_up()
+        self.reload()
         assert _of_records(self._planned, self.plain) == _of_records(self._planned, self.other)
 
 
 def tell(planned: PlannedCore, run: native.Monitor, action: Sample | int | Lost | Found) -> Any:
-    """Tell a run something; what it says."""
+    """Give a run an action; returns its answer."""
     match action:
         case Lost(names, t):
             return run.lose([planned.numbers[name] for name in names], t), run.flush()
@@ -72,18 +71,18 @@ def _state(run: native.Monitor) -> Any:
 
 
 def _of_records(planned: PlannedCore, run: native.Monitor) -> list[dict[str, Any]]:
-    """All that is said of attempts, reasons among it."""
+    """All fields of all attempts, including their reasons."""
     attempts = report_of_run(planned, run, 0, None).attempts
     return [{one.name: getattr(it, one.name) for one in fields(Attempt)} for it in attempts]
 
 
-def put_away(compiled: CompiledSpec, case: Case) -> int:
-    """Run a case twice, once taken up again behind each call; how often it was."""
+def reload_after_each_call(compiled: CompiledSpec, case: Case) -> int:
+    """Judge a case plainly and with a reload after each call; returns the number of reloads."""
     names = frozenset((*compiled.checked.signals, *compiled.checked.events))
     absent = frozenset() if case.names is None else names - case.names
     twins = Twins(planned_core(compiled), absent)
-    twins.take_up()
+    twins.reload()
     for action in told(case):
         twins.tell(action)
     twins.finish(case.end)
-    return twins.taken
+    return twins.reloads
