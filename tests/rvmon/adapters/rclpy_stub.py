@@ -28,7 +28,7 @@ class QoSProfile:
 
     @property
     def qos_profile(self):
-        """Stands for the information on a publisher that has it, too."""
+        """A profile; it also serves as the information about its publisher."""
         return self
 
 
@@ -38,7 +38,7 @@ class ClockType(IntEnum):
 
 @dataclass
 class Graph:
-    """All nodes, what tests publish, and what nodes do."""
+    """All nodes, the messages that tests publish, and the callbacks of nodes."""
 
     types: dict = field(default_factory=dict)  # by name: the class of messages
     publishers: dict = field(default_factory=dict)  # by topic: type, profiles
@@ -49,13 +49,13 @@ class Graph:
     waiting: queue.SimpleQueue = field(default_factory=queue.SimpleQueue)
 
     def call(self, function, *args):
-        """Have the thread that spins call a function, and wait until it did."""
+        """Let the spinning thread call a function, and wait for it."""
         done = queue.SimpleQueue()
         self.waiting.put(lambda: done.put(function(*args)))
         done.get(timeout=20)
 
     def publish(self, topic, **fields):
-        """Publish a message to who is subscribed."""
+        """Publish a message to all subscriptions."""
         kind = self.types[self.publishers[topic][0]]
         self.call(self.subscriptions[topic][0], types.SimpleNamespace(**fields), kind)
 
@@ -91,7 +91,7 @@ class Node:
 
 
 class Executor:
-    """Calls what waits, one after the other."""
+    """Calls waiting callbacks one after the other."""
 
     def __init__(self, graph):
         self._graph = graph
@@ -109,12 +109,12 @@ class Executor:
 
 
 def message(**fields):
-    """A class of messages with fields of these types."""
+    """A message class with fields of these types."""
     return type("Message", (), {"get_fields_and_field_types": classmethod(lambda _: fields)})
 
 
 def install(monkeypatch):
-    """Have `import rclpy` give the stand-in, and return its graph."""
+    """Make `import rclpy` give the stand-in; returns its graph."""
     graph = Graph()
 
     def get_message(name):

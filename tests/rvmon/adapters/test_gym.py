@@ -1,4 +1,4 @@
-"""Environments of Gymnasium whose episodes are judged."""
+"""Gymnasium environments with monitored episodes."""
 
 import warnings
 
@@ -29,7 +29,7 @@ def _judged(**options):
 
 
 def _played(env):
-    """Rewards and what is said of an episode of pushes to the right, and how long it was."""
+    """The rewards, the information and the length of an episode of pushes to the right."""
     env.reset(seed=1)
     steps, over = [], False
     while not over:
@@ -42,7 +42,7 @@ def _played(env):
 def test_a_wrapped_environment_is_a_good_one():
     from gymnasium.utils.env_checker import check_env
 
-    with warnings.catch_warnings():  # the wrapper is not the bare environment, which it advises
+    with warnings.catch_warnings():  # it advises the bare environment instead of a wrapper
         warnings.simplefilter("ignore", UserWarning)
         check_env(_judged(), skip_render_check=True)
 
@@ -64,7 +64,7 @@ def test_a_failure_can_end_the_episode():
 
 
 def test_the_reward_can_be_shaped_by_robustness():
-    """Each figure counts once, when nothing can change it any more."""
+    """Each figure counts once, when it is final."""
     steps = _played(_judged(shaping=lambda figures: 100.0 * len(figures)))
     figures = [len(one["margins"]) for _, one in steps]
     assert sum(figures) >= 2
@@ -72,7 +72,7 @@ def test_the_reward_can_be_shaped_by_robustness():
 
 
 def test_samples_within_a_step_have_their_instants():
-    """And a deadline is decided in the step in which it passes, though nothing comes."""
+    """A deadline is decided in the step in which it passes, even without a sample."""
     from rvmon.adapters.gym import Judged
 
     decided = []

@@ -1,4 +1,4 @@
-"""JSON lines as live data."""
+"""JSON lines as live input."""
 
 import os
 
@@ -44,7 +44,7 @@ def _verdicts(driver, lines, source, robot=None):
 
 
 def test_the_clock_follows_the_stamps(live):
-    """It never goes back for a late line, but for one that is of another run."""
+    """A late line does not set it back; a line of another run does."""
     driver, clock, source = live
     lines = [b'{"t": 20, "x": 0}', b'{"t": 19.5, "a": true}', b'{"t": 1, "x": 2}']
     feed_lines(source, lines[:2])
@@ -59,11 +59,11 @@ LEFT = [b'{"t": 1, "id": "left", "x": 1}', b'{"t": 2, "id": "left", "x": 1}']
 @each(
     ("lines", "robot", "unread", "verdicts"),
     [
-        # A line that cannot be read may have said anything.
+        # A line that cannot be read may have held anything.
         ([b'{"t": 0, "x": 0}', b"x: 7", b'{"t": 2}'], None, 1, {"": "I"}),
-        # One without a time came somewhere between its neighbours: perhaps too late.
+        # A line without a stamp is from some instant between its neighbours, perhaps late.
         ([b'{"t": 0, "x": 0}', b'{"x": 0}', b'{"t": 9, "x": 0}'], None, 1, {"": "I"}),
-        # A line of nobody known may be of any robot, also of one that comes later.
+        # A line without a known robot may be of any robot, also of one that comes later.
         (LEFT, "id", 0, {"left": "P"}),
         ([b"torn {", *LEFT], "id", 1, {"left": "I"}),
         (
@@ -89,7 +89,7 @@ def test_what_a_line_does_not_say_is_unknown(lines, robot, unread, verdicts):
 
 @pytest.mark.parametrize(("waits", "verdict"), [(True, "NT"), (False, "F")])
 def test_names_that_only_a_later_specification_declares_are_read(live, waits, verdict):
-    """From when it holds; what waits then is judged by the former, and counts no more."""
+    """From its start on; lines waiting at that time are judged by the former specification."""
     driver, _, source = live
     feed_lines(source, [b'{"t": 0, "x": 0}'])
     later = loads("signal y : real\nevent b\nrequirement R\n  upon b\n  then y <= 1")
@@ -114,8 +114,8 @@ def test_a_name_that_a_declared_one_may_be_meant_by_is_told_at_once(live, caplog
     assert told == "`state.x` feeds nothing, and `x` is declared: is `--map x=state.x` meant?"
 
 
-def test_names_that_are_not_declared_are_counted_and_take_no_room_for_ever(live):
-    """Of fresh names in each line so many are told apart, the others counted together."""
+def test_undeclared_names_are_counted_in_bounded_memory(live):
+    """With new names in each line, a limited number is listed, the others are counted together."""
     driver, _, source = live
     lines = [b'{"t": %d, "x": 0, "y%d": 1}' % (number, number) for number in range(1_200)]
     assert _verdicts(driver, [*lines, b""], source) == {"": Verdict.PASS}
@@ -130,8 +130,8 @@ def test_lines_without_a_time_are_stamped_as_they_arrive():
     assert driver.close()[""][0].attempts[0].decided == 7
 
 
-def test_a_stamp_of_another_epoch_is_told_and_stops_nothing():
-    """The clock runs by itself: what the line said is unknown, the next one is judged."""
+def test_a_stamp_of_another_epoch_is_reported_and_ignored():
+    """The clock runs by itself: the content of the line is unknown, the next one is judged."""
     source = JsonObjects(driver := Driver(loads(SPEC)))
     lines = [b'{"x": 0}', b'{"x": 0, "t": 1800000000}', b'{"x": 2}']
     assert _verdicts(driver, lines, source) == {"": Verdict.FAIL}
@@ -146,9 +146,9 @@ def test_lines_that_come_after_the_end_are_nobodys(live):
 
 
 def test_lines_are_read_as_they_come():
-    """A pipe gives them in pieces, and the last one may lack its end.
+    """A pipe delivers them in pieces, and the last one may lack its end.
 
-    Programs of Windows begin files with a mark, which is no part of a line.
+    Programs on Windows start files with a byte order mark, which is not part of a line.
     """
     read, write = os.pipe()
     lines = read_lines(read)
@@ -170,13 +170,13 @@ def test_lines_are_read_as_they_come():
         ([], 0, None),
     ],
 )
-def test_the_first_line_that_says_something_tells_whether_lines_have_stamps(lines, taken, stamp):
-    """What a program greets with does not; all that was read is given on."""
+def test_the_first_object_decides_whether_lines_have_stamps(lines, taken, stamp):
+    """Lines before it do not; all lines read are passed on."""
     assert first_lines(iter(lines), loads(SPEC).schema) == (lines[:taken], stamp)
 
 
-def test_a_line_longer_than_any_is_given_up(tmp_path, monkeypatch):
-    """It fills no memory, and what follows is read."""
+def test_an_overlong_line_is_cut_into_pieces(tmp_path, monkeypatch):
+    """So it takes little memory, and later lines are read."""
     monkeypatch.setattr("rvmon.adapters.json_objects.LONGEST_LINE", 1 << 18)
     path = tmp_path / "run.jsonl"
     path.write_bytes(b'{"t": 0}\n' + b"x" * (1 << 20) + b'\n{"t": 1}\n')
@@ -196,7 +196,7 @@ def test_a_line_longer_than_any_is_given_up(tmp_path, monkeypatch):
         (b'{"x": "\\ud800"}', "half of a surrogate pair"),
     ],
 )
-def test_what_is_no_object_says_what_is_wanted(text, why):
-    """As `rvmon run` does; rows of a CSV, which a pipe gives as well, lead to what reads them."""
+def test_messages_about_lines_that_are_not_objects(text, why):
+    """As of `rvmon run`; for rows of CSV the message names the command that reads them."""
     with pytest.raises(TraceError, match=why):
         decoded_object(text)

@@ -1,4 +1,4 @@
-"""MQTT, by a real broker."""
+"""MQTT with a real broker."""
 
 import json
 import socket
@@ -39,7 +39,7 @@ def broker(tmp_path):
 
 @pytest.fixture
 def publish(broker):
-    """What publishes a text, as soon as the broker is there."""
+    """A function that publishes a text once the broker runs."""
     client = Client(CallbackAPIVersion.VERSION2)
     client.connect("127.0.0.1", broker.port)
     client.loop_start()
@@ -50,7 +50,7 @@ def publish(broker):
 
 @contextmanager
 def _heard(port, **callbacks):
-    """What is judged of all that a broker gives, and what reads its messages."""
+    """A live monitor of a broker's messages, and the objects that it has read."""
     live = Live(loads(SPEC), **callbacks)
     objects = JsonObjects(live)
     with live, MqttSource(objects, address_of(f"mqtt://127.0.0.1:{port}/#")):
@@ -59,7 +59,7 @@ def _heard(port, **callbacks):
 
 @pytest.mark.process
 def test_messages_are_judged_by_robot_and_verdicts_come_back(broker, publish):
-    """A value under a topic, an object above it, an event; each robot by itself."""
+    """A value under a topic, an object above it, and an event; each robot separately."""
     heard = []
     listener = Client(CallbackAPIVersion.VERSION2)
     listener.on_message = lambda _, __, message: heard.append((message.topic, message.payload))
@@ -113,8 +113,8 @@ def test_a_message_that_is_no_json_is_lost_and_told(broker, publish):
     assert live.close()[""][0].verdicts["R1"] is Verdict.INCONCLUSIVE
 
 
-def test_what_a_broker_has_dropped_may_have_been_ours():
-    """It says how many of all clients; between two of its reports nobody knows what was lost."""
+def test_messages_dropped_by_the_broker_may_be_ours():
+    """It reports the number over all clients; between two reports anything may be lost."""
     driver = Driver(loads(SPEC), clock=(clock := SimulatedClock()))
     source = MqttSource(JsonObjects(driver), address_of("mqtt://127.0.0.1:1/#"))
     source.hear("arm/speed", b"0.5")
@@ -129,8 +129,8 @@ def test_what_a_broker_has_dropped_may_have_been_ours():
 
 
 @pytest.mark.process
-def test_what_a_broker_has_kept_did_not_happen_now(broker, publish):
-    """The value of a signal holds; an event, of some time ago, is none of now."""
+def test_retained_messages_are_not_events(broker, publish):
+    """The value of a signal holds; an event of some time ago does not occur now."""
     for topic, text in (("stop", "true"), ("arm/speed", "5")):
         publish(topic, text, retain=True).wait_for_publish(LONG)
     with _heard(broker.port) as (live, _):
@@ -140,9 +140,9 @@ def test_what_a_broker_has_kept_did_not_happen_now(broker, publish):
 
 @contextmanager
 def _answers(*answers):
-    """The port of a broker that says the same to whoever comes, at the second of his messages.
+    """The port of a broker that sends fixed answers after the second message of its client.
 
-    Beside it what it is told first.
+    Also returns the first bytes that it receives.
     """
     greeting = []
     with socket.create_server(("127.0.0.1", 0)) as server:
@@ -163,8 +163,8 @@ def _answers(*answers):
 
 
 @pytest.mark.parametrize("name", ["", "ann:s%20t@"])
-def test_a_topic_that_may_not_be_read_is_told(name):
-    """Not by this name and password, if there are any."""
+def test_a_topic_without_permission_is_reported(name):
+    """With and without a name and password."""
     driver = Driver(loads(SPEC), clock=SimulatedClock())
     with _answers(b"\x90\x04\x00\x01\x80\x00") as (port, greeting):
         address = address_of(f"mqtt://{name}127.0.0.1:{port}/arm/#")
@@ -176,8 +176,8 @@ def test_a_topic_that_may_not_be_read_is_told(name):
     assert greeting[0][9] & 0xC0 == (0xC0 if name else 0)
 
 
-def test_a_message_that_no_broker_should_let_through_is_lost():
-    """Its topic is no text; those behind it are heard."""
+def test_a_message_with_an_invalid_topic_is_lost():
+    """Its topic is not text; later messages are received."""
     driver = Driver(loads(SPEC), clock=SimulatedClock())
     objects = JsonObjects(driver)
     good = b"\x30\x0c\x00\x09arm/speed1"

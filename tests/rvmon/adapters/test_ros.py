@@ -1,4 +1,4 @@
-"""Topics of ROS 1 and ROS 2, by a real master and real DDS, in processes of their own."""
+"""Topics of ROS 1 and ROS 2 with a real master and real DDS in separate processes."""
 
 import json
 import os
@@ -38,7 +38,7 @@ WATCH = f"import sys; sys.path.append({SYSTEM!r}); from rvmon.cli import main; s
 
 @contextmanager
 def _ended(process):
-    """A process that does not outlive the test, nor hold it up."""
+    """A process that neither outlives the test nor blocks it."""
     alarm = threading.Timer(LONG, process.kill)
     alarm.start()
     with process:
@@ -50,7 +50,7 @@ def _ended(process):
 
 
 def _failures(folder, source, talker, environment):
-    """What `rvmon watch` says of a source by the second failure; then it is ended by Ctrl-C."""
+    """The output of `rvmon watch` up to the second failure; then it is ended by Ctrl-C."""
     environment = {**os.environ, **environment}
     watch = ["watch", EXAMPLES / "base.rv", source, "--format", "json"]
     command = [sys.executable, "-c", WATCH, *watch]
@@ -88,7 +88,7 @@ def test_topics_of_ros_1_are_judged(tmp_path, master):
 
 @pytest.mark.process
 def test_topics_of_ros_2_are_judged_over_dds(tmp_path):
-    """Without an installation of ROS, in a domain of its own."""
+    """Without an installation of ROS, in a separate domain."""
     pytest.importorskip("cyclonedds")
     domain = str(100 + os.getpid() % 100)
     talker = [sys.executable, EXAMPLES / "dds" / "talker.py", domain]
@@ -98,7 +98,7 @@ def test_topics_of_ros_2_are_judged_over_dds(tmp_path):
 
 @pytest.fixture
 def robots(monkeypatch):
-    """A domain of DDS, a topic of it that is a real signal, and what publishes it by a type."""
+    """A DDS domain, a topic for a real signal, and a function that publishes it with a type."""
     pytest.importorskip("cyclonedds")
     from cyclonedds.domain import DomainParticipant
     from cyclonedds.pub import DataWriter
@@ -124,13 +124,13 @@ def is_matched(matches):
     """Whether an endpoint has a match; `matches` lists them."""
     try:
         return bool(matches())
-    except IndexError:  # the binding counts them first, and one came before it listed them
+    except IndexError:  # the binding counts matches first, and one was added before it listed them
         return False
 
 
 @pytest.mark.process
 def test_a_second_publisher_of_another_type_cannot_be_heard_over_dds(robots):
-    """What the topic feeds is unknown for good, also where something of it was lost and found."""
+    """The names fed by the topic stay unknown, also after a loss that has ended."""
     from rvmon.adapters.dds import DdsSource
 
     live = Live(robots.spec)
@@ -181,8 +181,8 @@ def test_sources_that_begin_at_once_hear_alike():
 
 
 @pytest.mark.process
-def test_what_finds_no_room_in_dds_is_lost(robots, monkeypatch):
-    """Of what its topic feeds, since the last message; as the queue is empty it is known again."""
+def test_messages_that_overflow_the_queue_of_dds_are_lost(robots, monkeypatch):
+    """Names of the topic are lost since the last message, until the queue is empty."""
     from rvmon.adapters import dds
 
     monkeypatch.setattr(dds, "_DEPTH", 1)
@@ -197,14 +197,14 @@ def test_what_finds_no_room_in_dds_is_lost(robots, monkeypatch):
     kind, writer = robots.publisher("Float64")
     with dds.DdsSource(Slow(driver, robots.spec.schema), domain=robots.domain) as source:
         until(lambda: is_matched(writer.get_matched_subscriptions))
-        # What is sent before the reader knows its writer, too, goes unheard.
+        # Messages sent before the reader knows its writer are not received.
         readers = source._readers
         until(lambda: any(is_matched(r.get_matched_publications) for r, _ in [*readers.values()]))
         writer.write(kind(data=0.5))
         until(lambda: taken)
         writer.write(kind(data=0.5))
         writer.write(kind(data=5.0))
-        until(lambda: driver.waiting)  # that it found no room
+        until(lambda: driver.waiting)  # the overflow
         gate.set()
         until(lambda: driver.waiting >= 3)
     assert driver.close()[""][0].verdicts == {"R": Verdict.INCONCLUSIVE}
@@ -212,7 +212,7 @@ def test_what_finds_no_room_in_dds_is_lost(robots, monkeypatch):
 
 @pytest.fixture
 def linked(monkeypatch):
-    """Of a stand-in for rospy what its one connection is, and what its master says."""
+    """A stand-in for rospy with one connection and the answers of its master."""
     made = SimpleNamespace(socket=1, header={"callerid": "/robot"})
     link = SimpleNamespace(impl=SimpleNamespace(connections=[made]), master=lambda: None)
 
@@ -234,8 +234,8 @@ def linked(monkeypatch):
 
 
 @pytest.mark.parametrize("fault", ["a connection", "nonsense of the master", "rospy itself"])
-def test_what_looks_after_connections_of_ros_1_never_ends_in_silence(linked, fault, monkeypatch):
-    """Nobody knows any more whether something is lost: that is lost."""
+def test_a_failure_of_the_connection_check_of_ros_1_is_a_loss(linked, fault, monkeypatch):
+    """It is no longer known whether messages are lost, so they count as lost."""
     from rvmon.adapters.ros1 import Ros1Source
 
     monkeypatch.setattr("rvmon.adapters.ros1._TURN_S", 0.001)
@@ -280,7 +280,7 @@ def test_names_lead_to_the_topics_that_are_read(feed):
 
 
 class Odd:
-    """A message whose field cannot be read, for a reason of its own."""
+    """A message with a field that raises an unusual error."""
 
     @property
     def data(self):
@@ -313,8 +313,8 @@ def test_a_topic_that_cannot_be_read_is_lost_for_good(feed):
     assert {*report.verdicts.values()} == {"P", "I"}
 
 
-def test_what_was_lost_before_a_message_is_lost_since_the_last_one(feed):
-    """What was judged in between may have been otherwise."""
+def test_a_loss_before_a_message_starts_at_the_previous_one(feed):
+    """Verdicts in between may be affected."""
     messages, driver, clock = feed
     messages.take(FLOAT, {"data": 0.5})
     for t in (1, 2):
@@ -329,7 +329,7 @@ def test_what_was_lost_before_a_message_is_lost_since_the_last_one(feed):
 
 
 def test_the_clock_follows_the_topic_of_that_name():
-    """It is known what time it is from its first message on; back is a new run, and is told."""
+    """Time is known from its first message; a step back is a new run, and is reported."""
     spec, clock = loads(SPEC), SimulatedClock()
     driver = Driver(spec, clock=clock)
     messages = MessageFeed(driver, spec.schema, clock=clock)
@@ -377,8 +377,8 @@ while not rospy.is_shutdown():
 
 
 @pytest.mark.process
-def test_robots_of_a_simulator_are_judged_by_its_clock(tmp_path, master):
-    """`use_sim_time` of ROS 1: a deadline of simulated time, whatever the machine needs."""
+def test_robots_of_a_simulator_use_its_clock(tmp_path, master):
+    """`use_sim_time` of ROS 1: a deadline in simulated time, however slow the machine is."""
     pytest.importorskip("rosbags")
     environment = {"ROS_MASTER_URI": master, "ROS_IP": "127.0.0.1", "ROS_HOME": str(tmp_path)}
     told = ["/usr/bin/python3", "-c", "import rospy; rospy.set_param('/use_sim_time', True)"]

@@ -1,4 +1,4 @@
-"""The node of ROS 2, with a stand-in for rclpy, which cannot be installed here."""
+"""The ROS 2 node, with a stand-in for rclpy, which pip cannot install."""
 
 import json
 import sys
@@ -30,7 +30,7 @@ CARELESS = stub.QoSProfile(reliability=stub.ReliabilityPolicy.BEST_EFFORT)
 
 @pytest.fixture
 def graph(monkeypatch):
-    """Topics that are published: a twist, a stop that says whether, the time."""
+    """Published topics: a twist, a stop with a bool, the time."""
     made = stub.install(monkeypatch)
     made.types = {
         "std_msgs/msg/Bool": stub.message(data="boolean"),
@@ -50,7 +50,7 @@ def graph(monkeypatch):
 
 @pytest.fixture
 def started(graph):
-    """A source that follows `/clock`, with its driver."""
+    """A source that follows `/clock`, and its driver."""
     spec, clock = loads(SPEC), SimulatedClock()
     driver = Driver(spec, clock=clock, on_judged=lambda one: source.publish(one))
     feed = MessageFeed(driver, spec.schema, clock=clock)
@@ -68,8 +68,8 @@ def _moves(graph, x):
     graph.publish("/base/twist", linear=SimpleNamespace(x=x, y=0.0, z=0.0))
 
 
-def test_topics_are_judged_by_the_clock_of_a_simulator_and_verdicts_go_back(graph, started):
-    """A deadline passes because `/clock` says so, and no message of its topic comes."""
+def test_topics_are_judged_by_the_clock_of_a_simulator_and_verdicts_are_published(graph, started):
+    """A deadline passes by `/clock`, without a message of its topic."""
     _at(graph, started, 0)
     _moves(graph, 1.5)
     graph.publish("/stop", data=True)
@@ -81,9 +81,9 @@ def test_topics_are_judged_by_the_clock_of_a_simulator_and_verdicts_go_back(grap
     assert graph.parameters == {"use_sim_time": True}
 
 
-def test_what_is_promised_is_asked_for(graph, started):
-    """Reliable and latched where all publishers are, else less: more would get nothing."""
-    assert {*graph.subscriptions} == {"/clock"}  # what came before could not be stamped
+def test_requested_quality_of_service_follows_the_publishers(graph, started):
+    """Reliable and latched if all publishers are: requesting more would receive nothing."""
+    assert {*graph.subscriptions} == {"/clock"}  # earlier messages could not be stamped
     _at(graph, started, 0)
     assert "/other" not in graph.subscriptions
     asked = {topic: profile for topic, (_, profile, _) in graph.subscriptions.items()}
@@ -111,8 +111,8 @@ def test_what_was_lost_is_unknown(graph, started):
 
 
 @pytest.mark.parametrize("has_other_type", [False, True])
-def test_a_publisher_that_comes_later_and_cannot_be_heard_is_told(graph, started, has_other_type):
-    """It promises less than those before it, or has another type: what it says is unknown."""
+def test_a_later_publisher_that_cannot_be_received_is_reported(graph, started, has_other_type):
+    """It offers less than earlier ones, or has another type: its content is unknown."""
     _at(graph, started, 0)
     _moves(graph, 0.5)
     if has_other_type:
@@ -131,7 +131,7 @@ def test_a_publisher_that_comes_later_and_cannot_be_heard_is_told(graph, started
 
 @pytest.mark.parametrize("several", [False, True])
 def test_a_topic_that_can_never_be_read_is_lost_for_good(graph, caplog, several):
-    """Its package is not installed, or it has two types: what it may feed is unknown."""
+    """Its package is not installed, or it has two types: names that it may feed are unknown."""
     why = "is the package of std_msgs/msg/Bool installed?"
     if several:
         why = "it has several types, std_msgs/msg/Bool, std_msgs/msg/Int32"

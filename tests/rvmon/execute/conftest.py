@@ -1,4 +1,4 @@
-"""What is asked of processes that were begun."""
+"""Helpers that observe processes."""
 
 import os
 import signal
@@ -11,7 +11,7 @@ import pytest
 
 
 def has_ended(process: int) -> bool:
-    """Whether a process is gone, or waits for someone to ask how it ended."""
+    """Whether a process has ended (it may be a zombie)."""
     try:
         os.kill(process, 0)
         stat = Path(f"/proc/{process}/stat")
@@ -22,7 +22,7 @@ def has_ended(process: int) -> bool:
 
 @pytest.fixture
 def all_have_ended():
-    """Waits for the end of processes; or the test does not end."""
+    """Waits until processes have ended."""
 
     def wait(processes: list[int]) -> None:
         while not all(map(has_ended, processes)):
@@ -33,7 +33,7 @@ def all_have_ended():
 
 @pytest.fixture
 def ends_with_its_parent(tmp_path, all_have_ended):
-    """Kills a script that prints the processes that it began, and waits until these have ended."""
+    """Kills a script that prints the processes it has started, and waits until these have ended."""
 
     def check(text: str, words: list[str], kind: signal.Signals) -> None:
         script = tmp_path / "parent.py"

@@ -1,4 +1,4 @@
-"""A program that is run ends with the process that began it; interrupts clean up."""
+"""A program ends with the process that started it; interrupts clean up."""
 
 import os
 import signal

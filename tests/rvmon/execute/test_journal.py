@@ -1,4 +1,4 @@
-"""Journals: what was added stays, and what is torn is never taken for an entry."""
+"""Journals: added entries stay, and a torn entry is never read."""
 
 import pytest
 
@@ -22,7 +22,7 @@ def test_what_was_added_is_read(path):
 
 
 def test_it_ends_where_it_is_torn_or_damaged(path):
-    """Wherever the file is cut, or whichever byte is another, the lines before are read."""
+    """Wherever the file is cut or a byte is changed, the lines before are read."""
     whole = path.read_bytes()
     for place in range(len(whole)):
         for body in (whole[:place], whole[:place] + bytes([whole[place] ^ 1]) + whole[place + 1 :]):

@@ -1,4 +1,4 @@
-"""Work on the workers of a scheduler of Dask: a real one, with two processes."""
+"""Tasks on workers of a real Dask scheduler with two processes."""
 
 import json
 import os
@@ -26,11 +26,11 @@ pytestmark = [
 
 @pytest.fixture(scope="module")
 def address(tmp_path_factory):
-    """Of a scheduler with two workers, which gives up a task when it has killed both of them."""
+    """The address of a scheduler with two workers, which gives up a task that has killed both."""
     folder = tmp_path_factory.mktemp("dask")
     environment = {**os.environ, "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "1"}
     environment["DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT"] = "1s"
-    environment["DASK_DISTRIBUTED__WORKER__MULTIPROCESSING_METHOD"] = "forkserver"  # begins fast
+    environment["DASK_DISTRIBUTED__WORKER__MULTIPROCESSING_METHOD"] = "forkserver"  # starts fast
     begun = []
 
     def begin(*words):
@@ -95,7 +95,7 @@ def test_results_come_in_order_from_other_processes(address):
 
 
 def test_an_error_is_raised_in_its_turn(address):
-    """Behind the results that come before it; also that of a task that cannot be made."""
+    """After the earlier results; also the error of a task that cannot be created."""
 
     def begin():
         return lambda task: 12 // task

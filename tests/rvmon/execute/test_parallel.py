@@ -1,4 +1,4 @@
-"""Tasks shared among processes: order, errors, lost workers, and that nothing lives on."""
+"""Tasks in several processes: order, errors, lost workers, and cleanup."""
 
 import multiprocessing
 import os
@@ -47,12 +47,12 @@ if __name__ == "__main__":
 
 
 def doing(work):
-    """What `execute` wants: begun in a process, it gives what does a task."""
+    """What `execute` needs: called in a worker, it returns the function for a task."""
     return partial(partial, work)
 
 
 def halved(number):
-    """Half of an even number; others are wrong, and some of them dearly so."""
+    """Half of an even number; odd numbers raise, and 13 kills the process."""
     if number == 13:
         os.kill(os.getpid(), signal.SIGKILL)
     if number % 2:
@@ -61,7 +61,7 @@ def halved(number):
 
 
 def given(results):
-    """All results, and the error that came then."""
+    """All results, and the error after them."""
     found = []
     try:
         found.extend(results)
@@ -71,7 +71,7 @@ def given(results):
 
 
 def met(folder, last, number):
-    """The last two of some tasks are not over before both have begun."""
+    """The last two of some tasks do not end before both have started."""
     if number >= last - 1:
         Path(folder, str(number)).touch()
         until = time.monotonic() + 20
@@ -81,8 +81,8 @@ def met(folder, last, number):
     return number
 
 
-def test_the_last_tasks_are_done_by_all_processes(tmp_path):
-    """However many were given out together before."""
+def test_all_processes_share_the_last_tasks(tmp_path):
+    """However many tasks a chunk had before."""
     done = execute(range(500), doing(partial(met, tmp_path, 499)), jobs=2)
     assert list(done) == [*range(500)]
 
@@ -95,7 +95,7 @@ def test_results_come_in_the_order_of_the_tasks(jobs, size):
 
 @JOBS
 def test_slow_and_quick_tasks_keep_their_order(jobs):
-    """Where many quick ones are followed by a slow one, what it was given goes to others."""
+    """If a slow task follows many quick ones, the rest of its chunk goes to others."""
     tasks = [0.0] * 40 + [0.3] + [0.0] * 300 + [0.2] * 3 + [0.0] * 40
 
     def slept(pair):
@@ -121,7 +121,7 @@ def test_work_begins_once_in_each_process(tmp_path, jobs):
 
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_each_task_can_have_a_process_of_its_own(jobs):
-    """Nothing that one leaves behind is there for the next; what was lost is replaced."""
+    """No state of one task is visible to the next; lost workers are replaced."""
 
     def told(number):
         return os._exit(3) if number == 2 else os.getpid()
@@ -140,8 +140,8 @@ def test_an_error_comes_in_its_turn(jobs):
     assert str(error) == "7 is odd"
 
 
-def test_an_error_does_not_wait_for_the_tasks_behind_it():
-    """A worker has several at a time, and nobody wants to know of the later ones."""
+def test_an_error_does_not_wait_for_later_tasks():
+    """A worker has several tasks at a time, and the later ones no longer matter."""
 
     def work(number):
         if number > 40:
@@ -157,7 +157,7 @@ def test_an_error_does_not_wait_for_the_tasks_behind_it():
 
 @JOBS
 def test_an_error_of_the_tasks_themselves_comes_in_its_turn(jobs):
-    """As where a list of files cannot be read to its end."""
+    """For example, if a list of files cannot be read to its end."""
 
     def tasks():
         yield from range(0, 100, 2)
@@ -179,8 +179,8 @@ def test_an_error_at_the_beginning_is_that_of_the_first_task(jobs):
     assert [diagnostic.code for diagnostic in error.diagnostics] == ["RV012"]
 
 
-def test_an_error_that_nobody_expected_says_where_it_happened():
-    """Elsewhere there is no traceback to look at."""
+def test_an_unexpected_error_has_its_traceback():
+    """The traceback of a worker is not available elsewhere."""
     _, error = given(execute([1, 2], doing(len), jobs=2))
     assert isinstance(error, TypeError)
     assert "worker.py" in "".join(error.__notes__)
@@ -205,7 +205,7 @@ def test_a_worker_that_is_lost_is_told_with_its_task(jobs):
 
 
 def test_a_worker_that_is_lost_while_it_waits_is_replaced():
-    """No task is to blame; as where the results are wanted slowly, and memory runs out."""
+    """No task is to blame, for example if memory runs out while results are consumed slowly."""
     instead = {"instead": lambda _, ended: ended.why}
     results = execute(range(0, 2000, 2), doing(halved), jobs=1, **instead)
     found = [next(results)]
@@ -254,7 +254,7 @@ def test_many_traces_are_judged_alike_by_processes(tmp_path: Path):
 
 
 def told(task, ended):
-    """The task and how its process ended, in the place of a result."""
+    """The task and how its process ended, in place of a result."""
     return task, ended.timed_out, ended.why
 
 
@@ -280,8 +280,8 @@ def test_a_task_whose_process_ends_can_have_a_result(jobs):
     ]
 
 
-def test_an_error_is_no_result(tmp_path):
-    """A task that raises ends the work, whatever stands for those whose process ended."""
+def test_an_error_ends_the_work(tmp_path):
+    """A task that raises ends the work, whatever replaces results of lost processes."""
     found, error = given(execute([2, 7, 8], doing(halved), jobs=2, instead=told))
     assert found == [1]
     assert isinstance(error, TraceError)
@@ -296,15 +296,15 @@ def test_to_begin_takes_no_time_of_a_task(tmp_path):
     assert found == ["1", "2"]
 
 
-def test_a_task_that_comes_first_is_ended_as_others_are(monkeypatch):
-    """Not after the time to begin as well, which its process did not need."""
+def test_the_first_task_has_the_same_time_limit(monkeypatch):
+    """The time to start a process is not added to it."""
     monkeypatch.setattr(parallel, "START_S", 3600)
     tasks = execute([600, 0], doing(time.sleep), jobs=1, instead=told, timeout_s=0.5)
     assert [*tasks] == [(600, True, "it took more than 0.5 s"), None]
 
 
-def test_a_report_is_handed_over_without_the_plan(tmp_path):
-    """What goes from process to process grows with the attempts, not with the specification."""
+def test_a_report_is_sent_without_the_plan(tmp_path):
+    """The data sent between processes grows with the attempts, not with the specification."""
     many = "".join(f"requirement N{n}\n  always x < {n + 10}\n" for n in range(200))
     spec = rvmon.loads("spec s\nsignal x : real\nrequirement R\n  always x < 3\n" + many)
     report, other = (spec.evaluate([(0, {"x": 1.0}), (1, {"x": 5.0})]) for _ in range(2))

@@ -19,17 +19,17 @@ COUNTED = {"ob_refcnt"}
 
 
 def declared(header: str) -> list[str]:
-    """Names of the objects and functions that are declared."""
+    """The names of declared objects and functions."""
     return OBJECT.findall(header) + FUNCTION.findall(header)
 
 
 def comparison(header: str) -> str:
-    """C that compiles where the real header is, if it says the same as this one."""
+    """C that compiles with the real header iff both declare the same."""
     lines = [
         '#include "python_abi.h"',
         "#define SAME(a, b) __builtin_types_compatible_p(__typeof__(a), __typeof__(b))",
     ]
-    # Names that the stable ABI has for compiled modules alone begin with an underscore.
+    # Names of the stable ABI for compiled modules only start with an underscore.
     public = [name for name in declared(header) if not name.startswith("_")]
     lines += [f'_Static_assert(sizeof(&{name}) > 0, "{name}");' for name in public]
     lines += ["#define RVMON_COMPARE_PYTHON_H", "#undef RVMON_PYTHON_ABI_H"]

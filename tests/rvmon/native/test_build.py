@@ -1,4 +1,4 @@
-"""The native core is built with the package, with what there is; a forgotten build is noticed."""
+"""The native core is built with the package; a build that was forgotten is noticed."""
 
 import importlib
 import importlib.machinery
@@ -22,7 +22,7 @@ ROOT = Path(__file__).parents[3]
 
 @pytest.fixture
 def hook():
-    """The build hook, as pip loads it: by its path. It does not optimise, which takes longest."""
+    """The build hook, loaded by its path as pip does, without optimisation to save time."""
     spec = importlib.util.spec_from_file_location("hatch_build", ROOT / "hatch_build.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -32,7 +32,7 @@ def hook():
 
 @pytest.fixture
 def copied(hook, monkeypatch, tmp_path):
-    """A folder that the hook builds from, with the binding alone: it links, and is quick."""
+    """A folder to build from with the binding only: it links quickly."""
     folder = tmp_path / "native"
     whole = Path(rvmon.native.sources.FOLDER)
     for source in (*whole.rglob("*.h"), *whole.glob("python/*.c")):
@@ -44,15 +44,15 @@ def copied(hook, monkeypatch, tmp_path):
 
 
 def loaded(path: Path) -> ModuleType:
-    """The extension at a path, beside the one that is used."""
+    """The extension at a path, in addition to the one in use."""
     loader = importlib.machinery.ExtensionFileLoader("_core", str(path))
     module = importlib.util.module_from_spec(importlib.util.spec_from_loader("_core", loader))
     loader.exec_module(module)
     return module
 
 
-def test_the_core_is_of_its_sources():
-    """What is imported says of itself that it was built from the sources beside it."""
+def test_the_core_was_built_from_its_sources():
+    """The imported extension contains the hash of the sources beside it."""
     assert rvmon.native._core.source_hash == rvmon.native.sources.source_hash() != ""
 
 
@@ -90,7 +90,7 @@ def test_hash_is_of_sources_alone(tmp_path):
 
 @pytest.fixture
 def reloading():
-    """Import the package of the extension anew, and again as it was when the test is over."""
+    """Import the package of the extension anew, and restore it after the test."""
     yield lambda: importlib.reload(rvmon.native)
     importlib.reload(rvmon.native)
 
@@ -119,14 +119,14 @@ def test_no_sources_no_check(monkeypatch, reloading):
 
 
 def test_named_compiler_is_taken(hook, monkeypatch):
-    """`$CC` is the compiler, with its options; none other is looked for, none installed."""
+    """`$CC` is the compiler with its options; no other is searched for or installed."""
     monkeypatch.setenv("CC", "mycc --option 'a b'")
     assert hook.compiler() == ["mycc", "--option", "a b"]
     assert hook.CoreBuildHook.dependencies(None) == []
 
 
 def test_without_compiler_one_is_required(hook, monkeypatch, tmp_path):
-    """Where nothing compiles, not even what is called `cc`, the build asks for a package."""
+    """If nothing compiles, not even `cc`, the build requires a package with a compiler."""
     broken = tmp_path / "cc"
     broken.write_text("#!/bin/sh\nexit 1\n", encoding="ascii")
     broken.chmod(0o755)
@@ -137,7 +137,7 @@ def test_without_compiler_one_is_required(hook, monkeypatch, tmp_path):
 
 
 def test_tags(hook, monkeypatch):
-    """One wheel is for all versions from 3.11 on; that of a free-threaded Python for it alone."""
+    """One wheel is for all versions from 3.11; that of a free-threaded Python for it only."""
     assert hook.wheel_tag().startswith("cp311-abi3-")
     assert hook.file_name() in {"_core.abi3.so", "_core.pyd"}
     monkeypatch.setattr(hook, "free_threaded", lambda: True)
@@ -148,7 +148,7 @@ def test_tags(hook, monkeypatch):
 
 @pytest.mark.slow
 def test_free_threaded_needs_headers(hook, monkeypatch, tmp_path):
-    """A Python without GIL has another layout of objects, for which we declare nothing."""
+    """A Python without GIL has another layout of objects, which is not declared here."""
     monkeypatch.setattr(hook, "free_threaded", lambda: True)
     monkeypatch.setattr(hook.sysconfig, "get_path", lambda _name: str(tmp_path))
     with pytest.raises(SystemExit, match=r"Python\.h"):
@@ -186,8 +186,8 @@ def test_changed_source_is_built_anew(copied, hook, tmp_path):
 
 
 @pytest.mark.compiler
-def test_compiler_has_its_say(copied, hook):
-    """A source that does not compile ends the build with the compiler's words; no file is lost."""
+def test_errors_of_the_compiler_are_shown(copied, hook):
+    """A source that does not compile ends the build with the compiler's output; no file is lost."""
     (copied / hook.file_name()).write_bytes(b"as it was")
     (copied / "wrong.c").write_bytes(b"int wrong = ;\n")
     with pytest.raises(SystemExit, match=r"wrong\.c:1"):
@@ -197,7 +197,7 @@ def test_compiler_has_its_say(copied, hook):
 
 
 def compared(header: str, folder: Path) -> str:
-    """What the compiler says of our declarations beside Python's own; nothing if they agree."""
+    """The compiler's output for our declarations beside Python's own; empty if they agree."""
     (folder / "python_abi.h").write_text(header, encoding="utf-8")
     (folder / "comparison.c").write_text(comparison(header), encoding="utf-8")
     include = sysconfig.get_path("include")

@@ -1,4 +1,4 @@
-"""Conversions of time refuse what is out of range, in words that show the number."""
+"""Conversions of time refuse values out of range and show the number."""
 
 import math
 from fractions import Fraction
@@ -27,7 +27,7 @@ from rvmon.trace.time import (
         (ticks_of_seconds, Fraction(10**10), "time 10000000000 s is"),
         (ticks_of_seconds, -(10**10), "time -10000000000 s is"),
         (ticks_of_seconds, 1e300, r"time 1e\+300 s is"),
-        # An integer that Python would not write out.
+        # An integer that Python refuses to print.
         (ticks_of_seconds, 10**5000, r"time beyond 10\*\*30 s is"),
         (whole_ticks, 10**5000, r"time beyond 10\*\*30 ns is"),
     ],
@@ -43,7 +43,7 @@ def test_what_is_out_of_range_is_shown_as_a_number(read, time, shown):
     st.one_of(
         st.floats(-4.6e9, 4.6e9),
         st.floats(-1e-6, 1e-6),
-        # Halves of a tick, and what stands right beside them.
+        # Halves of a tick, and their neighbours.
         st.tuples(st.integers(-(2**42), 2**42), st.sampled_from([-1, 0, 1])).map(
             lambda pair: pair[0] * 2.0**-10 * (1 + pair[1] * 2.0**-52)
         ),
@@ -51,7 +51,7 @@ def test_what_is_out_of_range_is_shown_as_a_number(read, time, shown):
     )
 )
 def test_seconds_are_rounded_once(seconds):
-    """Floats give the tick nearest to what they stand for, the even one of two."""
+    """A float gives the nearest tick; ties go to the even one."""
     is_coarse = math.ulp(seconds) > 1e-9
     stands_for = Fraction(repr(seconds) if is_coarse else seconds)
     assert ticks_of_seconds(seconds) == round(stands_for * 1_000_000_000)
@@ -109,7 +109,7 @@ def test_texts_are_rounded_once(text, unit):
 
 
 @each("text", ["", ".", "1_0", "1.2.3", "\N{SUPERSCRIPT TWO}", "0x1", "1 2", "nan"])
-def test_what_is_no_decimal_is_refused(text):
-    """Digits of other scripts are read as Python reads them; all else is no number."""
+def test_texts_that_are_not_decimals_are_refused(text):
+    """Digits of other scripts are read as by Python; everything else is refused."""
     with pytest.raises(TraceError):
         ticks_of_text(text)

@@ -1,4 +1,4 @@
-"""The record of an attempt: what is worked out late is the same to all who look."""
+"""The record of an attempt: fields computed late are the same for every reader."""
 
 import copy
 import pickle
@@ -22,7 +22,7 @@ REST = {
 
 
 def decided(calls: list[object] | None = None) -> Attempt:
-    """A record whose rest is worked out by whoever looks; the calls for that are noted."""
+    """A record whose other fields are computed on access; the calls are recorded."""
 
     def details(attempt: Attempt, noted: object, name: str) -> dict[str, object]:
         if calls is not None:
@@ -36,8 +36,8 @@ def decided(calls: list[object] | None = None) -> Attempt:
     return made
 
 
-def test_the_rest_is_worked_out_once_and_only_if_someone_looks():
-    """The verdict and instants cost nothing; the first look at another field settles them all."""
+def test_other_fields_are_computed_once_on_access():
+    """Verdict and instants need no computation; access to another field computes all of them."""
     calls: list[object] = []
     attempt = decided(calls)
     assert (attempt.name, attempt.verdict, attempt.decided, attempt.in_doubt) == (
@@ -52,7 +52,7 @@ def test_the_rest_is_worked_out_once_and_only_if_someone_looks():
 
 @pytest.mark.parametrize("copied", [copy.copy, lambda it: pickle.loads(pickle.dumps(it))])  # noqa: S301 - just made
 def test_a_copy_has_all_fields(copied):
-    """A record that nobody has looked at goes to other processes without what works it out."""
+    """A record sent to another process has its fields, without the code that computes them."""
     assert copied(decided()) == decided()
 
 

@@ -1,4 +1,4 @@
-"""What has changed between two files of verdicts."""
+"""Differences between two files of verdicts."""
 
 from tests.tools.each import each
 
@@ -22,7 +22,7 @@ def rows(*verdicts, recording="a.csv", requirement="R1", error=""):
 
 
 def broken(recording="a.csv"):
-    """The row of a recording that cannot be judged."""
+    """The row of a recording that cannot be evaluated."""
     return [VerdictRow(recording, error="it is cut off")]
 
 
@@ -57,8 +57,8 @@ def test_what_still_fails_is_no_difference():
     assert (found.differences, found.failing, found.same) == ([], {"a.csv": ["R1"]}, 1)
 
 
-def test_a_recording_that_breaks_off_now_is_a_loss():
-    """One that did and does not any more is a gain; its verdicts are not compared."""
+def test_a_recording_that_became_unreadable_is_a_loss():
+    """One that became readable is a gain; its verdicts are not compared."""
     [found] = compare(rows("F"), [*broken(), *rows("P", error="it is cut off")]).differences
     assert (found.change, found.reason) == (Change.UNREADABLE, "it is cut off")
     [found] = compare(broken(), rows("F")).differences
@@ -75,8 +75,8 @@ def test_what_only_one_has_is_told():
     assert found.differences == []
 
 
-def test_recordings_that_were_moved_are_the_same():
-    """The folder that all lie in does not count if no name stands in both."""
+def test_moved_recordings_are_the_same():
+    """The common folder is ignored if no name is in both files."""
     old = rows("P", recording="/monday/x/1.csv") + rows("P", recording="/monday/y/1.csv")
     new = rows("F", recording="logs/x/1.csv") + rows("P", recording="logs/y/1.csv")
     found = compare(old, new)

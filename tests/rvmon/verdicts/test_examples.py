@@ -1,4 +1,4 @@
-"""The examples about many recordings do what they say."""
+"""The examples about many recordings work as described."""
 
 import json
 import re
@@ -18,7 +18,7 @@ NIGHTLY = EXAMPLES / "nightly"
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """Two logs, in each of which B1 and B2 fail once."""
+    """Two logs in which B1 and B2 fail once each."""
     (tmp_path / "logs").mkdir()
     for name in ("a", "b"):
         shutil.copy(EXAMPLES / "base.csv", tmp_path / "logs" / f"{name}.csv")

@@ -1,4 +1,4 @@
-"""Verdicts are written as tables, and read back as they were."""
+"""Verdicts are written as tables and read back unchanged."""
 
 import csv
 import sqlite3
@@ -32,7 +32,7 @@ ROWS = [
 
 @pytest.fixture(scope="module")
 def report():
-    """A pass, a failure and an open attempt of one requirement, none of the other."""
+    """A passed, a failed and an open attempt of one requirement, and none of another."""
     return replace(rvmon.loads(SPEC).evaluate(ROWS), trace="a.csv")
 
 
@@ -51,7 +51,7 @@ def test_a_report_has_a_row_for_each_attempt(report):
 
 
 def test_frames_keep_instants_whole():
-    """Stamps since 1970 beside an attempt that is open: floats would round them."""
+    """Stamps since 1970 next to an open attempt: floats would round them."""
     spec = rvmon.loads(SPEC)
     origin = 1_789_000_000_123_456_789
     monitor = spec.monitor()

@@ -1,4 +1,4 @@
-"""Failures that are known are accepted, until their last day."""
+"""Known failures are accepted until their last day."""
 
 import datetime
 
@@ -26,7 +26,7 @@ until = 2031-01-01
 
 
 def report(trace, *failed):
-    """R1 and R2 on a recording, of which some failed."""
+    """R1 and R2 on a recording, with some failures."""
     attempts = [
         Attempt(name, 1, 0, 1, Verdict.FAIL if name in failed else Verdict.PASS)
         for name in ("R1", "R2")
@@ -36,7 +36,7 @@ def report(trace, *failed):
 
 @pytest.fixture
 def known(tmp_path):
-    """What a file accepts on a day."""
+    """The failures that a file accepts on a day."""
     path = tmp_path / "known.toml"
     path.write_text(FILE)
     return lambda day: KnownFailures(
@@ -44,8 +44,8 @@ def known(tmp_path):
     )
 
 
-def test_a_known_failure_is_accepted_where_it_is_known(known):
-    """In recordings of its pattern, whatever folder they lie in, on its last day too."""
+def test_a_known_failure_is_accepted_in_its_recordings(known):
+    """In recordings that match its pattern, in any folder, including on its last day."""
     accepted = known("2030-01-31")
     assert accepted.failures(report("logs/monday/3.csv", "R1", "R2")) == []
     assert accepted.failures(report("logs/tuesday/3.csv", "R1", "R2")) == ["R1"]
@@ -64,8 +64,8 @@ def test_after_its_last_day_it_is_a_failure_again(known):
     ]
 
 
-def test_what_fails_no_more_is_to_be_taken_out(known):
-    """If a recording that it is about shows it; one that it is not about does not."""
+def test_a_known_failure_that_no_longer_occurs_is_reported(known):
+    """Only if one of its recordings shows that."""
     fine = report("monday/3.csv", "R2")
     assert list(known("2030-01-01").remarks([fine])) == [
         "R1 (the motor is slow) is known to fail, but does not: remove it from the file"

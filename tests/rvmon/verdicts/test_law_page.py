@@ -1,4 +1,4 @@
-"""The page on what changed in the law says what is judged now."""
+"""The page on changes of the semantics gives the present verdicts."""
 
 import re
 from pathlib import Path
@@ -44,7 +44,7 @@ def test_what_is_judged_now(text, form, data, table, tmp_path):
 
 
 def listed(names):
-    """As the tables have it."""
+    """As in the tables."""
     return ", ".join(names) or "none"
 
 
@@ -55,8 +55,8 @@ def test_the_programs_of_the_page_print_what_their_comments_say(capsys):
     assert capsys.readouterr().out.split() == re.findall(r"print\(.*\)  # (\w+), before", program)
 
 
-def test_the_law_that_the_page_names_is_the_present_one(capsys):
-    """A new law needs a new page."""
+def test_the_page_names_the_present_semantics(capsys):
+    """New semantics need a new page."""
     main(["--version"])
     version = capsys.readouterr().out
     assert PAGE.startswith("# What changed in the law\n")

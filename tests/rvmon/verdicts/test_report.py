@@ -16,7 +16,7 @@ ORIGIN = 500_000_000
 
 
 def attempts() -> list[Attempt]:
-    """One attempt of each verdict, the first with everything that a record can hold."""
+    """An attempt of each verdict; the first has every field set."""
     return [
         Attempt(
             *("R2", 2, 4, None, Verdict.INCONCLUSIVE, Decision.OPEN),
@@ -88,8 +88,8 @@ def test_json_shape() -> None:
     }
 
 
-def test_a_report_of_the_first_law_is_read() -> None:
-    """Those did not name their law; read and written again, the report is still of that law."""
+def test_a_report_of_the_first_semantics_is_read() -> None:
+    """They do not name their semantics; after a round trip they still have that version."""
     document = json.loads(report().to_json())
     del document["law"]
     old = Report.from_json(json.dumps(document))
