@@ -1,5 +1,6 @@
 """A tiny system under test for campaigns of about a second."""
 
+import multiprocessing
 import os
 import time
 from pathlib import Path
@@ -7,6 +8,10 @@ from pathlib import Path
 import pytest
 
 from rvmon import cdv
+
+needs_fork = pytest.mark.skipif(
+    multiprocessing.get_start_method() != "fork", reason="needs forked processes"
+)
 
 SPEC = """
 spec toy "A toy"

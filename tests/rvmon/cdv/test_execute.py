@@ -1,10 +1,10 @@
 """Whatever a test does, it has a result, and the others are played."""
 
-import multiprocessing
 import os
 
 import msgspec
 import pytest
+from tests.rvmon.cdv.conftest import needs_fork
 
 from rvmon import cdv
 from rvmon.cdv.campaign_plan import plan
@@ -15,12 +15,7 @@ from rvmon.coverage import Ending
 from rvmon.errors import RvmonError
 from rvmon.session import load
 
-pytestmark = [
-    pytest.mark.process,
-    pytest.mark.skipif(
-        multiprocessing.get_start_method() != "fork", reason="needs processes that are forked"
-    ),
-]
+pytestmark = [pytest.mark.process, needs_fork]
 
 BAD = {
     "kill": (Ending.LOST, "its process was killed by signal SIGKILL"),

@@ -6,7 +6,9 @@ import xml.etree.ElementTree as ET
 import pytest
 
 from rvmon import cdv
+from rvmon.cdv.campaign_plan import plan
 from rvmon.cdv.code_coverage import Meter, cobertura, code_groups, lcov
+from rvmon.cdv.play import player
 from rvmon.coverage import Hit, model_of, without
 from rvmon.errors import RvmonError, UnknownNameError
 
@@ -56,8 +58,6 @@ def test_what_ran_is_hit(code):
 
 @pytest.mark.slow
 def test_only_the_marked_code_is_measured_where_it_is_marked(campaign, code):
-    from rvmon.cdv.play import player
-
     toy = loaded(code).Toy()
 
     class System:
@@ -70,18 +70,13 @@ def test_only_the_marked_code_is_measured_where_it_is_marked(campaign, code):
     def statements(*, marked):
         measured = cdv.Code(cdv.blocks_of(code), branches=False, marked=marked)
         chosen = campaign(("a", {}), robots={"toy": cdv.Robot(System, None)})
-        outcome, _ = player(chosen.robots, measured, None)(_job(chosen))
+        (job,) = plan(chosen).jobs()
+        outcome, _ = player(chosen.robots, measured, None)(job)
         return {group: list(items) for group, items in outcome.hits.items()}
 
     climbing = {"statements of Toy.climb": ["4", "6"]}
     assert statements(marked=True) == climbing
     assert statements(marked=False) == {**climbing, "statements of Toy.high": ["9"]}
-
-
-def _job(campaign):
-    from rvmon.cdv.campaign_plan import plan
-
-    return plan(campaign).jobs()[0]
 
 
 def test_blocks_with_the_same_name_are_refused(code):

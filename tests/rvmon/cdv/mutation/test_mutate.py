@@ -1,11 +1,11 @@
 """The command `mutate` as a person uses it."""
 
 import json
-import multiprocessing
 import re
 from dataclasses import replace
 
 import pytest
+from tests.rvmon.cdv.conftest import needs_fork
 from tests.tools.each import each
 from tests.tools.looked_at import faults
 
@@ -13,12 +13,7 @@ from rvmon.cdv.mutation.python_mutants import code_mutants
 from rvmon.cdv.test import save
 from rvmon.cli.campaign import main
 
-pytestmark = [
-    pytest.mark.process,
-    pytest.mark.skipif(
-        multiprocessing.get_start_method() != "fork", reason="needs processes that are forked"
-    ),
-]
+pytestmark = [pytest.mark.process, needs_fork]
 
 
 def equivalent(campaign, folder, part):

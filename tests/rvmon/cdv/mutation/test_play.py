@@ -1,12 +1,12 @@
 """Mutants are killed, with the reason, or survive, and leave nothing behind."""
 
-import multiprocessing
 import time
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 import pytest
+from tests.rvmon.cdv.conftest import needs_fork
 from tests.rvmon.cdv.mutation.conftest import System, lift_of, rides
 
 from rvmon import cdv
@@ -20,12 +20,7 @@ from rvmon.errors import RvmonError
 from rvmon.execute import parallel
 from rvmon.session import load
 
-pytestmark = [
-    pytest.mark.process,
-    pytest.mark.skipif(
-        multiprocessing.get_start_method() != "fork", reason="needs processes that are forked"
-    ),
-]
+pytestmark = [pytest.mark.process, needs_fork]
 
 
 DOOR = 'told.append(("door", True))'
