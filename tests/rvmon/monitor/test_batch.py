@@ -1,4 +1,4 @@
-"""What arrays and Arrow tables are taken for: what lists of the same values are."""
+"""Arrays and Arrow tables are read like lists of the same values."""
 
 import numpy as np
 import pyarrow
@@ -30,7 +30,7 @@ def told(spec: rvmon.Spec, trace: object, time: str) -> str:
     ],
 )
 def test_stamps_beyond_the_limits_are_refused(time, stamps, tmp_path):
-    """So is what is no number of seconds."""
+    """Also values that are not a number of seconds."""
     spec = rvmon.loads(BOUND)
     why = "not finite" if stamps[1] != stamps[1] else "out of range"
     if time == "t_ns":
@@ -57,8 +57,8 @@ def test_seconds_up_to_the_limits_are_taken(last):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("rows", [3, 3000])
-def test_what_a_mask_hides_is_no_update_and_infinite_numbers_are_values(rows):
-    """Sums over a column may be beyond the doubles or no number: nothing warns of that."""
+def test_masked_values_are_no_updates_and_infinite_numbers_are_values(rows):
+    """Sums over a column may overflow or be NaN, without a warning."""
     spec = rvmon.loads(BOUND)
     times = np.arange(float(rows))
     hidden = np.resize([1.0, 9.0, 1.0], rows)
@@ -139,6 +139,6 @@ def test_what_is_no_column_is_refused(name, wrong):
 
 
 def test_wide_floats_are_refused():
-    """A number that is no double would be rounded: that is told."""
+    """A number wider than a double would be rounded, so it is an error."""
     table = {"t": np.arange(3000.0), "x": np.ones(3000, np.longdouble)}
     assert "`x`: expected a number" in told(rvmon.loads(BOUND), table, "t")

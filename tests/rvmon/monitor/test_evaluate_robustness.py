@@ -1,4 +1,4 @@
-"""Whole recordings are measured alike, by arrays or sample by sample."""
+"""Recordings are measured equally as arrays and sample by sample."""
 
 import random
 
@@ -29,8 +29,8 @@ def figures_of(margins):
 @pytest.mark.law
 @pytest.mark.parametrize("time", TimeModel)
 @pytest.mark.parametrize("unknowns", [False, True])
-def test_a_recording_is_judged_and_measured_alike_by_columns_and_by_rows(time, unknowns):
-    """Also where most rows change no verdict; evenly spaced rows go another way."""
+def test_columns_and_rows_have_the_same_verdicts_and_robustness(time, unknowns):
+    """Also if most rows change no verdict; evenly spaced rows take another path."""
     traces = TraceProfile(samples=300, fewest=70, span=900, unknowns=unknowns)
     measured = 0
     for number in range(8):
@@ -61,7 +61,7 @@ def test_without_requirements_there_is_nothing_to_measure():
 
 
 def test_a_stream_of_arrays_is_a_sequence():
-    """Its bounds are equal but where input is unknown, and near the end of the trace."""
+    """The bounds differ only where input is unknown and near the end of the trace."""
     text = "time sampled\nsignal x : real\nrequirement R\n  upon start then within 1 ns x > 1\n"
     trace = arrays_of(range(6), {"x": [1.0, 2.0, np.nan, 3.0, 4.0, 6.0]})
     stream = rvmon.loads(text).robustness(trace).streams["R"]

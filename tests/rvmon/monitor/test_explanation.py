@@ -1,4 +1,4 @@
-"""What a record says of its verdict."""
+"""The explanations in records of verdicts."""
 
 import pytest
 from tests.tools.build import actions
@@ -18,7 +18,7 @@ requirement R
 
 
 def run(requirement, told, end=None, time="held"):
-    """A specification, and the attempts of a monitor that is told `actions` at whole seconds."""
+    """A specification, and the attempts of its monitor with `actions` at whole seconds."""
     spec = rvmon.loads(f"time {time}\n{HEAD}{requirement}\n")
     monitor = spec.monitor()
     for one in actions(told):
@@ -95,14 +95,14 @@ def test_a_failure_names_obligation_window_and_place(time, name):
 
 
 def test_the_blamed_sample_is_the_one_that_changed_the_value():
-    """A value that has been wrong for long is blamed on the sample that made it so."""
+    """A value that has been wrong for long is blamed on the sample that set it."""
     _, [failed] = run("upon go\nthen for 2 s not near", "1 near; 5 go")
     assert failed.blame.at == (10**9,)
 
 
 @each("required", ["false since near", "slow since near", "once near"])
 @each("time", ["held", "sampled", "sampled every 1 s"])
-def test_a_proposition_of_which_the_past_is_asked_too_is_shown_as_it_stands(required, time):
+def test_a_proposition_that_the_past_reads_too_is_shown_with_its_present_value(required, time):
     """Not as it stood when all was born, from when on some of what is asked rests."""
     told = "0 -near slow; 1 near; 2 -near; 3 near; 4 ?near; 5 near; 6 -near"
     _, attempts = run(f"upon near then {required}", told, time=time)
@@ -111,7 +111,7 @@ def test_a_proposition_of_which_the_past_is_asked_too_is_shown_as_it_stands(requ
 
 
 @pytest.mark.parametrize("told", ["{} and {}", "{1} and {0}"])
-def test_a_known_that_is_asked_for_is_shown(told):
+def test_a_requested_known_is_shown(told):
     """Not what a sum compares with itself to see whether its limit is born, under the same text."""
     required = told.format("count(go, 4 s) >= y", "known(y)")
     _, [failed] = run(f"upon go then {required}", "0 x=1; 1 go")
@@ -200,24 +200,24 @@ DEADLINES |= {"windows in a window": 6 * S, "the future of a past": 4 * S}
 
 @each("time", TIMES)
 @each("name", LEFT)
-def test_what_was_left_open_and_what_ended_an_episode_is_told(time, name):
-    """The cause of an I is the stretch over which a signal was not known."""
+def test_reasons_of_open_attempts_and_ended_episodes(time, name):
+    """The cause of an I is the time over which a signal was unknown."""
     requirement, told, end, reason = LEFT[name]
     _, [left] = run(requirement, told, end, time)
     assert left.reason == reason
-    if left.verdict == "I":  # what is in doubt has no deadline of its own
+    if left.verdict == "I":  # an attempt in doubt has no deadline of its own
         assert left.deadline == DEADLINES.get(name)
 
 
 @each(
     ("time", "required", "told", "owed"),
     [
-        # What time alone has settled is left out, also where no position came with it.
+        # Parts settled by time alone are left out, also without a position at that time.
         (
             *("sampled", "upon e then (within 3 ns p) or (within 9 ns q)"),
             *("0 -p -q e; 6!", "`within 9 ns q` by 9 ns"),
         ),
-        # What is required at each position, and required now, stands once, with its deadline.
+        # An obligation of each position, and of now, is listed once with its deadline.
         ("held", "whenever p then within 5 ns q", "0 -p -q; 2 p", "`within 5 ns q` by 7 ns"),
     ],
 )
@@ -231,8 +231,8 @@ def test_what_is_still_owed_is_told_once(time, required, told, owed):
 
 
 @pytest.mark.parametrize("advances", [(), (10**9,), (2 * 10**9,), (2 * 10**9 + 1,)])
-def test_a_run_that_time_alone_takes_on_and_decides_is_told_as_it_was(advances):
-    """The record names the window that closed, however time was told to pass."""
+def test_the_reason_of_a_decision_by_time_alone(advances):
+    """The record names the window that closed, however time was advanced."""
     monitor = rvmon.loads(
         "spec s\nsignal p, r : bool\nrequirement R1\n"
         "  upon start then eventually[2 s, 2 s] (p until r)\n"
@@ -247,7 +247,7 @@ def test_a_run_that_time_alone_takes_on_and_decides_is_told_as_it_was(advances):
 
 
 def test_the_deadline_of_what_ends_an_obligation_is_that_of_its_window():
-    """What releases an obligation has a window of its own, which time alone closes."""
+    """The release of an obligation has a window of its own, which time alone closes."""
     monitor = rvmon.loads(
         "spec s\ntime sampled\nsignal p, q : bool\nrequirement R1\n"
         "  upon start then (q M (always[0 ns, 1 ns] p))\n"
@@ -277,8 +277,8 @@ def test_a_name_without_a_source_is_said_to_have_none():
     assert left.reason == "left open by the input: `near` has no source"
 
 
-def test_what_is_owed_in_a_loop_is_that_of_now():
-    """Positions at which the same is required again are passed over: the window moves on."""
+def test_a_recurring_obligation_is_that_of_now():
+    """Positions with the same obligation are skipped: its window moves on."""
     text = "requirement R\nupon start\nthen eventually always[1 ns, 1 ns] start"
     monitor = rvmon.loads(f"spec s\ntime sampled every 1 ns\n{text}\n").monitor()
     monitor.step_ns(0, {})
@@ -300,7 +300,7 @@ def test_what_one_record_shows_is_its_own():
 
 
 def test_a_payload_that_is_too_large_has_no_history():
-    """Its comparison is false wherever the event does not occur, which is no news."""
+    """Its comparison is false wherever the event does not occur, so earlier truths mean nothing."""
     spec = rvmon.loads(
         "event pick(f: real)\nrequirement R\n  upon pick then immediately pick.f <= 10\n"
     )

@@ -1,4 +1,4 @@
-"""Signals that ignore NaN: by each way in, what is ignored is as if it were not there."""
+"""Signals that ignore NaN: in every format, NaN is as if it were absent."""
 
 import math
 
@@ -47,17 +47,17 @@ def spec(request):
 
 
 def records(report):
-    """What was judged, without its reasons."""
+    """The records without their reasons."""
     return report.verdicts, [
         (a.requirement, a.number, a.triggered, a.decided, a.verdict) for a in report.attempts
     ]
 
 
 @pytest.mark.slow
-def test_it_is_unknown_a_while_after_its_last_good_value(spec):
+def test_the_signal_goes_stale_after_its_last_good_value(spec):
     """Not at the first NaN, and not counted from one; until then the value stays.
 
-    It is no finding on the inputs that NaN came, but that the signal became stale.
+    The NaN is not a finding of input health; the stale signal is.
     """
     report = spec.evaluate(ROWS)
     assert [a.verdict for a in report.attempts if a.requirement == "Fresh"] == ["P", "P", "F"]
@@ -67,7 +67,7 @@ def test_it_is_unknown_a_while_after_its_last_good_value(spec):
 
 
 def test_files_are_judged_as_samples(spec, tmp_path):
-    """Also where NaN has the stamp of a value: that is no conflict, and the value stays."""
+    """Also if NaN has the stamp of a value: there is no conflict, and the value stays."""
     lines = ["t,range,free,look"]
     for t, row in ROWS:
         lines.append(f"{t},{row['range']},{row.get('free', '')},{int('look' in row)}")

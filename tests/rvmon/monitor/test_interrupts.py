@@ -1,4 +1,4 @@
-"""After Ctrl-C, wherever it comes within a step, a monitor goes on, and says what it knows."""
+"""After Ctrl-C anywhere within a step, a monitor continues with what it knows."""
 
 import dis
 import sys
@@ -38,13 +38,13 @@ Place = tuple[CodeType, int]
 
 
 class _Odd(dict[str, object]):
-    """A sample that takes a closer look."""
+    """A sample that needs the slow way."""
 
 
 class _Strike:
-    """A trace function that interrupts rvmon once, where a signal handler may run.
+    """A trace function that interrupts rvmon once at a place where a signal handler may run.
 
-    Python looks for signals as a function of its own begins, behind a call, and on the way back in
+    Python checks for signals when a Python function starts, after a call, and on the way back in
     a loop; nowhere else, so that statements without these are taken whole.
 
     Args:
@@ -91,7 +91,7 @@ def _begun(spec: rvmon.Spec) -> Monitor:
 
 
 def _struck(monitor: Any, strike: _Strike) -> None:
-    """A step in which R1 fails, an attempt of R2 begins and one ends; it concerns no other."""
+    """A step in which R1 fails, an attempt of R2 starts and one ends; others are not affected."""
     row = _Odd({"x": 4.0, "e": True, "p": True})
     before = sys.gettrace()
     sys.settrace(strike)
@@ -102,15 +102,15 @@ def _struck(monitor: Any, strike: _Strike) -> None:
 
 
 def _passed(spec: rvmon.Spec) -> tuple[list[Place], Monitor]:
-    """Where the step can be interrupted, and a monitor that took it whole."""
-    for _ in range(2):  # the second time what a specification keeps for its monitors is there
+    """The places at which the step can be interrupted, and a monitor that completed it."""
+    for _ in range(2):  # the second time, the objects cached by the specification exist
         monitor, strike = _begun(spec), _Strike()
         _struck(monitor, strike)
     return [*strike.passed], monitor
 
 
 def _interrupted(spec: rvmon.Spec, places: list[Place]) -> Iterator[Monitor]:
-    """For each of these places a monitor whose step was interrupted there."""
+    """For each place a monitor whose step was interrupted there."""
     for place in places:
         monitor = _begun(spec)
         with pytest.raises(KeyboardInterrupt):
@@ -119,7 +119,7 @@ def _interrupted(spec: rvmon.Spec, places: list[Place]) -> Iterator[Monitor]:
 
 
 def _judged_on(monitor: Monitor) -> Report:
-    """What comes of the requirements that the step did not concern, when the run goes on."""
+    """The verdicts of unaffected requirements when the run continues."""
     monitor.step_ns(4 * _S, {"x": 1.0, "y": 1.0})
     monitor.step_ns(5 * _S, {"y": 4.0, "f": True})
     assert "R4" in {one.requirement for one in monitor.open}
@@ -141,7 +141,7 @@ def _is_torn(report: Report) -> bool:
     return any(one.kind is HealthKind.INTERRUPTED for one in report.health)
 
 
-def test_after_a_torn_step_nothing_passes_and_a_monitor_goes_on() -> None:
+def test_after_an_interrupted_step_nothing_passes_and_the_monitor_continues() -> None:
     """A step is judged in full, or not at all, or what has not failed is inconclusive.
 
     What goes on from a snapshot judges the other requirements as if nothing had been; the terminal

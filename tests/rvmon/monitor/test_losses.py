@@ -1,4 +1,4 @@
-"""What a monitor is told of a source that was lost, and of samples that came too late."""
+"""Monitors with lost sources and with samples that came too late."""
 
 import random
 from dataclasses import replace
@@ -45,7 +45,7 @@ def said(report):
 
 
 def lossy_cases(kind):
-    """Cases of which only samples are told, and when they ended; something is lost in each."""
+    """Cases with samples and an end only; each has a loss."""
     for seed in range(20):
         rng = random.Random(f"{kind} {seed}")
         spec = random_spec(rng, Profile(requirements=2, depth=2))
@@ -56,8 +56,8 @@ def lossy_cases(kind):
 
 
 @pytest.mark.law
-def test_samples_that_are_held_back_are_lost_in_the_same_order():
-    """With settle='next', by a snapshot now and then, each stretch is that of the oracle."""
+def test_delayed_samples_keep_the_order_of_losses():
+    """With settle='next' and snapshots in between, each outage is that of the oracle."""
     for rng, case in lossy_cases("next"):
         monitor = build_monitor(compile_spec(case.spec), sources=case.names, settle="next")
         report, _ = drive(Interrupted(monitor, rng, share=0.2), case)
@@ -98,14 +98,14 @@ def test_what_is_lost_fails_nothing_and_passes_nothing():
     assert (HealthKind.DROPPED, "x", 2 * 10**9, ("Slow",)) in found
 
 
-def test_a_stretch_within_another_ends_nothing():
-    """Nor is what was missed between two samples found while its connection is down."""
+def test_an_outage_within_another_does_not_end_it():
+    """Nor do missed samples end while their connection is down."""
     monitor = begun()
     monitor.lose(["x"], since=1)
     monitor.lose(["x"], since=2, until=3)
     monitor.miss(["x"])
     monitor.step(5, {"other": True})
-    monitor.lose(["other"], since=2, until=3)  # what was judged cannot be lost any more
+    monitor.lose(["other"], since=2, until=3)  # decided time cannot be lost any more
     assert not monitor.step(6, {"x": 9.0})
     monitor.found(None, at=7)
     assert [one.name for one in monitor.step(8, {"x": 9.0})] == ["Slow#1"]
@@ -113,8 +113,8 @@ def test_a_stretch_within_another_ends_nothing():
 
 
 @pytest.mark.parametrize(("settle", "expected"), [("now", "FPP"), ("next", "IPP")])
-def test_what_is_missed_is_lost_between_two_samples(settle, expected):
-    """It may have had the stamp of the next one where equal stamps are one sample."""
+def test_missed_samples_are_lost_between_two_samples(settle, expected):
+    """They may have the stamp of the next one if equal stamps are one sample."""
     monitor = begun(settle=settle)
     monitor.step(1, {"go": True})
     monitor.miss(["done"], why="a line that cannot be read")
@@ -125,8 +125,8 @@ def test_what_is_missed_is_lost_between_two_samples(settle, expected):
     assert next(one.triggered for one in report.attempts if one.verdict == "I") == 10**9
 
 
-def test_what_is_missed_before_the_first_sample_leaves_nothing_green():
-    """Nobody knows when it was."""
+def test_nothing_passes_with_samples_missed_before_the_first_one():
+    """Their stamps are unknown."""
     monitor = rvmon.loads(SPEC.format(more="")).monitor()
     monitor.miss()
     monitor.step(0, {"x": 1.0, "other": True})
@@ -135,8 +135,8 @@ def test_what_is_missed_before_the_first_sample_leaves_nothing_green():
 
 @pytest.mark.parametrize("time", ["held", "sampled", "sampled every 1 s"])
 @pytest.mark.parametrize("settle", ["now", "next"])
-def test_what_is_missed_behind_the_last_sample_leaves_nothing_green(time, settle):
-    """It may stand at any later instant, and fail there: the trace's end is not known."""
+def test_nothing_passes_with_samples_missed_after_the_last_one(time, settle):
+    """They may be at any later instant, and fail there: the end of the trace is not known."""
     for does_miss, expected in ((False, "NTPP"), (True, "III")):
         monitor = begun(f"time {time}", settle=settle)
         monitor.step(0.5, {"x": 2.0})
@@ -146,8 +146,8 @@ def test_what_is_missed_behind_the_last_sample_leaves_nothing_green(time, settle
 
 
 @pytest.mark.parametrize("settle", ["now", "next"])
-def test_the_trace_goes_on_to_a_loss_within_another_one(settle):
-    """Also in what was missed: a clock ticks up to there, and nothing is known at its ticks."""
+def test_the_trace_extends_to_a_loss_within_another_one(settle):
+    """Also for missed samples: a clock ticks up to there, and nothing is known at its ticks."""
     monitor = begun("time sampled every 1 s", settle=settle)
     monitor.step(0.5, {"x": 2.0})
     monitor.miss()
@@ -215,8 +215,8 @@ def test_nothing_is_lost_that_is_not_declared():
             call()
 
 
-def test_what_is_decided_behind_an_outage_has_no_figure_of_before_it():
-    """Its sign would say the contrary of the verdict."""
+def test_an_attempt_decided_after_an_outage_has_no_robustness():
+    """The sign of the part before the outage could contradict the verdict."""
     text = "time sampled\nsignal x : real\nrequirement R\n  upon start\n  then for 10 s x <= 5\n"
     spec = rvmon.loads(text)
     judged, measured = spec.monitor(), spec.robustness_monitor()
@@ -230,8 +230,8 @@ def test_what_is_decided_behind_an_outage_has_no_figure_of_before_it():
 
 
 @pytest.mark.slow
-def test_reasons_that_are_all_different_do_not_fill_the_memory():
-    """As those of a program that puts a line number into each."""
+def test_distinct_reasons_of_losses_take_bounded_memory():
+    """As from a program that puts a line number into each reason."""
     monitor = begun()
     for number in range(1_500):
         monitor.late(["x"], 0, why=f"line {number}")

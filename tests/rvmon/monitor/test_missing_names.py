@@ -1,4 +1,4 @@
-"""What cannot be judged is not green: recordings in columns that lack what is read."""
+"""Recordings in columns that lack a name do not pass."""
 
 import json
 
@@ -32,7 +32,7 @@ def spec():
 
 
 def doors(folder, columns):
-    """The same recording through all doors that have columns."""
+    """The same recording in all formats with columns."""
     lines = [
         ",".join(columns),
         *(",".join(map(str, row)) for row in zip(*columns.values(), strict=True)),
@@ -59,8 +59,8 @@ def test_what_is_captured_is_read_by_the_requirement(value):
     assert (missing.name, missing.kind, missing.requirements) == ("x", "missing", ("R",))
 
 
-def test_updates_of_a_missing_name_are_not_known():
-    """That a column is missing says neither that something came nor that nothing did."""
+def test_updates_of_a_missing_name_are_unknown():
+    """A missing column means neither that an event occurred nor that it did not."""
     conditions = ("not updated(beat) or p", "not updated(e) or p", "age(beat) <= 1 s")
     required = "".join(
         f"requirement R{n}\n  always ({one})\n"
@@ -84,7 +84,7 @@ def test_a_name_that_is_read_has_a_column(spec, tmp_path):
 
 
 def test_recordings_in_lines_declare_nothing(spec, tmp_path):
-    """An event that never occurs is false there, and a signal that never comes leaves it open."""
+    """An event that never occurs is false there; a signal without values leaves attempts open."""
     path = tmp_path / "a.jsonl"
     path.write_text('{"t": 0, "gap": 2}\n{"t": 1, "gap": 2}\n')
     for trace in (path, [(0, {"gap": 2.0}), (1, {"gap": 2.0})]):
@@ -145,7 +145,7 @@ def test_a_column_is_mapped_through_every_door(spec, tmp_path):
 
 @pytest.mark.slow
 def test_the_command_line_refuses_and_maps(tmp_path, monkeypatch, says):
-    """Exit code 2 with the file, 1 where it may be lacking, 0 where it is mapped."""
+    """Exit code 2 with the file, 1 if the name may be missing, 0 if it is mapped."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "base.rv").write_text(SPEC)
     (tmp_path / "less.csv").write_text("t,Speed,gap,pick\n0,0,2,1\n1,0,2,0\n")

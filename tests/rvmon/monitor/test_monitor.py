@@ -1,4 +1,4 @@
-"""The online monitor as a program uses it."""
+"""The online monitor, as used by a program."""
 
 import math
 
@@ -30,8 +30,8 @@ def _monitor():
     return rvmon.loads(SPEC).monitor()
 
 
-def test_what_each_tick_starts_again_is_not_due():
-    """A clock that runs from the last position goes on with time, and decides nothing by itself."""
+def test_a_clock_restarted_at_each_tick_is_not_due():
+    """A clock that runs from the last position moves with time, and decides nothing by itself."""
     text = "always ((F[0 ns, 20 ns] r) -> (p U r))"
     run = rvmon.loads(f"time held\nsignal p, r : bool\nrequirement R\n  {text}\n").monitor()
     run.step_ns(0, {"p": True, "r": False})

@@ -1,4 +1,4 @@
-"""The delay network: what only it can judge, and what is said of it."""
+"""The delay network: requirements that only it can judge, and their reasons."""
 
 from itertools import accumulate
 
@@ -26,7 +26,7 @@ def spec_of(requirement, time="held"):
 
 
 def outcomes(spec, told, end=None):
-    """Trigger and decision instants in seconds, with the verdicts; it is told `actions` at such."""
+    """Trigger and decision instants in seconds, with the verdicts; `actions` are in seconds too."""
     monitor = spec.monitor()
     for one in actions(told):
         monitor.step(one.t, one.values)
@@ -51,13 +51,13 @@ def test_the_compiler_picks_it_where_no_automaton_closes(requirement, judge):
 
 
 def test_time_alone_may_decide_one_reading_of_an_attempt():
-    """It is settled as one that cannot pass, whatever its policy says of what is open."""
+    """It counts as one that cannot pass, whatever its policy for open attempts."""
     spec = spec_of("upon e then eventually[1 s, 3 s] (a and for 1 s a)\n  at end weak")
     assert outcomes(spec, "0; 1 e; 9 b") == outcomes(spec, "0; 1 e", 9) == [(1, None, "I")]
 
 
-def test_what_only_led_on_is_settled_together():
-    """An episode fails where it does, however many samples it lasted, far apart or not."""
+def test_positions_that_decide_nothing_are_settled_together():
+    """An episode fails at its instant, however many samples it has, and however far apart."""
     spec = spec_of("whenever a then b", "sampled")
     for last in range(30, 50):
         stamps = list(accumulate(1 + 6 * (k % 7 == 0) for k in range(last)))
@@ -66,7 +66,7 @@ def test_what_only_led_on_is_settled_together():
 
 
 def test_the_sample_before_is_kept():
-    """What looks back a sample finds it, however far back it lies and however long it has gone."""
+    """An operator that reads the previous sample finds it, however long ago it was."""
     spec = spec_of("upon e then F[1 s, 2 s] rise(F[0 s, 0 s] a)", "sampled")
     for at in range(20, 37):
         told = "; ".join(f"{2 * k} a{' e' * (k == at)}" for k in range(at + 3))
@@ -74,7 +74,7 @@ def test_the_sample_before_is_kept():
 
 
 def test_time_decides_under_another_letter_before_the_next_position():
-    """What an unknown occurrence left open is known as soon as another one is told."""
+    """An attempt left open by an unknown occurrence is decided at the next one."""
     spec = spec_of("whenever e then F[1 ns, 1 ns] true", "sampled every 4 ns")
     monitor = spec.monitor()
     monitor.step_ns(0, {"e": None})
@@ -83,8 +83,8 @@ def test_time_decides_under_another_letter_before_the_next_position():
     assert (failed.decided, failed.at_decision) == (6, {"e": True})
 
 
-def test_what_time_alone_decides_is_known_beforehand():
-    """However far ahead, and though the letter has changed at every sample."""
+def test_decisions_by_time_alone_are_scheduled():
+    """However far ahead, and even if the letter has changed at every sample."""
     monitor = spec_of("upon e then F[1 h, 2 h] for 3 s b").monitor()
     for k in range(50):
         monitor.step(k * 0.01, {"b": k % 2 == 0, "e": True} if k == 7 else {"b": k % 2 == 0})
@@ -114,8 +114,8 @@ def test_reasons_are_the_same_later(time):
 
 
 @pytest.mark.slow
-def test_what_stays_unknown_while_nobody_looks_fails_nothing():
-    """A value lost since the network was last asked, which is not until the next change."""
+def test_a_value_that_was_lost_unobserved_fails_nothing():
+    """A value was lost since the last evaluation; the next one is at the next change."""
     monitor = spec_of("whenever a then F[2 s, 5 s] F[1 ns, 2 ns] b").monitor()
     for t in range(0, 800 * SECOND, 20 * SECOND):
         monitor.step_ns(t, {"a": True, "b": False})

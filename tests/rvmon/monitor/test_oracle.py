@@ -26,9 +26,9 @@ PAIRS = 30
 
 
 def measured(case):
-    """What the engine finds while the case goes on, by what tells attempts apart.
+    """The figures of the engine during the case, by attempt.
 
-    What is known of an open attempt must only draw closer, up to its figure.
+    The bounds of an open attempt may only become tighter, up to its final figure.
     """
     monitor = RobustnessMonitor(Spec(case.spec)._compiled, sources=case.names)
     found, bounds = {}, {}
@@ -59,15 +59,15 @@ def by_oracle(case):
 
 
 def assert_within(later, earlier, case):
-    """What is known later lies within what was known earlier."""
+    """Later bounds are within earlier ones."""
     if earlier is not None:
         assert earlier.low <= later.low <= later.high <= earlier.high, show_case(case)
 
 
 def fits(attempt, low, high, kept, *, says_nothing):
-    """Whether figures have the sign of a verdict, where they are not 0.
+    """Whether figures that are not 0 have the sign of a verdict.
 
-    An episode may be met and say nothing, since something of it had no value.
+    An episode may pass without a meaningful figure if a part of it had no value.
     """
     match attempt.decision, attempt.verdict:
         case Decision.PREFIX, Verdict.PASS:

@@ -1,4 +1,4 @@
-"""Plans that were packed before are read from the cache: the same, or not at all."""
+"""The cache of packed plans returns the same plan, or nothing."""
 
 import hashlib
 import os
@@ -41,7 +41,7 @@ SAMPLES = [
 
 @pytest.fixture
 def packs_nothing(monkeypatch):
-    """From now on who packs a plan fails."""
+    """Packing a plan fails from now on."""
 
     def forbid():
         monkeypatch.setattr(rvmon.core.pack, "pack", lambda _: pytest.fail("it is packed"))
@@ -54,17 +54,17 @@ def kept_in(own_cache):
 
 
 def judged(text=TEXT, **how):
-    """What a monitor that is made anew says of the samples, online and afterwards."""
+    """The verdicts of a new monitor on the samples, online and at the end."""
     spec = rvmon.loads(text)
     monitor = spec.monitor(**how)
     decided = [list(monitor.step(t, values)) for t, values in SAMPLES]
     return decided, monitor.finish(9).to_json(), spec
 
 
-def test_the_second_time_it_is_read(own_cache, packs_nothing):
+def test_the_second_time_the_cache_is_read(own_cache, packs_nothing):
     decided, report, spec = judged()
     evaluated = spec.evaluate(SAMPLES).verdicts
-    build_monitor(compile_spec(spec.checked))  # not each that programs make up is kept
+    build_monitor(compile_spec(spec.checked))  # not every generated specification is kept
     assert [path.stat().st_mode & 0o077 for path in kept_in(own_cache)] == [0]
     packs_nothing()
     again, same, spec = judged()
@@ -102,7 +102,7 @@ def whole(body):
 
 
 def damages(path, other):
-    """What may stand in the file instead: torn, of another plan, none, changed."""
+    """Damaged contents of the file: torn, of another plan, empty, changed."""
     content = path.read_bytes()
     body = content.partition(b"\n")[2]
     key, names, data = body.split(b"\n", 2)
@@ -121,7 +121,7 @@ def damages(path, other):
         yield content[: len(content) - len(data)] + changed
 
 
-def test_a_damaged_file_is_of_no_account(own_cache):
+def test_a_damaged_file_is_ignored(own_cache):
     decided, report, _ = judged()
     [path] = kept_in(own_cache)
     judged(TEXT.replace("x > 1\n", "x > 2\n").replace("requirement S", "requirement Q"))
@@ -143,7 +143,7 @@ def test_what_is_refused_is_not_kept(own_cache):
 
 @pytest.mark.process
 def test_all_processes_share_it(tmp_path):
-    """Whatever the order of their sets is: the same plan, under the same name."""
+    """Whatever the order of their sets: the same plan under the same name."""
     spec = Path(__file__).parents[3] / "specs" / "handover_truth.rv"
     program = f"import rvmon; rvmon.load({str(spec)!r}).monitor()"
     found = set()

@@ -25,7 +25,7 @@ CASES = range(60)
 
 
 def random_known(rng):
-    """Where something is true and where false, on 0 … LAST, with gaps."""
+    """Random intervals of true and of false on 0 … LAST, with gaps."""
     true, false = [], []
     left = 0
     while left <= LAST:
@@ -39,7 +39,7 @@ def random_known(rng):
 
 
 def at(pieces, position):
-    """The stamp of a position; later than all if it is not known."""
+    """The stamp of a position; later than all others if it is unknown."""
     found = stamp(pieces, position)
     return NEVER if found is None else found
 
@@ -67,7 +67,7 @@ def test_points_and_windows():
 
 
 def step(left, right, k, true, false):
-    """Right or (left and what comes next), of the stamps of true and of false."""
+    """One step of `right or (left and next)` on the stamps of true and of false."""
     return (
         min(at(right[0], k), max(at(left[0], k), true)),
         max(at(right[1], k), min(at(left[1], k), false)),
@@ -75,7 +75,7 @@ def step(left, right, k, true, false):
 
 
 def test_sweeps():
-    """`until` and `since` are what their recursion gives; before all, nothing was met."""
+    """`until` and `since` agree with their recursion; before the first position they are false."""
     for seed in CASES:
         rng = random.Random(seed)
         left, right = random_known(rng), random_known(rng)

@@ -1,4 +1,4 @@
-"""A recording that says what it lost, as samples and as columns, against the oracle."""
+"""A recording with recorded losses, as samples and as columns, agrees with the oracle."""
 
 import random
 from dataclasses import dataclass, replace
@@ -35,7 +35,7 @@ class Lossy:
 
 
 def in_columns(rng, case):
-    """A case whose samples say something of all names, and its pieces, cut anywhere."""
+    """A case with samples of all names, and its pieces, cut anywhere."""
     content = whole(content_of(rng, case))
     samples = tuple(Sample(t, cells) for t, cells in content.rows)
     spec = case.spec
@@ -76,8 +76,8 @@ def test_what_a_recording_lost_counts_from_its_first_to_its_last_instant(seed):
 
 @each("time", ["held", "sampled", "sampled every 1 ns"])
 @each("last", [4, 5, 6])
-def test_behind_an_outage_it_is_known_again(time, last):
-    """Be its last instant that of a sample or not."""
+def test_names_are_known_again_after_an_outage(time, last):
+    """Whether its last instant is that of a sample or not."""
     spec = rvmon.loads(
         f"time {time}\nsignal x : real\nevent go\nrequirement R\n  upon go then x > 1\n"
     )

@@ -1,4 +1,4 @@
-"""Cases in which a monitor once differed from the law, shrunk by the differential test."""
+"""Cases in which a monitor once differed from the semantics, shrunk by the differential test."""
 
 import random
 
@@ -221,7 +221,7 @@ CASES |= (
 
 
 def disagreeing(cases):
-    """What any form gives otherwise than the oracle: verdicts, decision instants, by each call."""
+    """Differences between each form and the oracle: verdicts, decision instants, by call."""
     compiler = Compiler()
     return [
         (form, found)
@@ -261,7 +261,7 @@ def test_no_source_and_many(count):
 @pytest.mark.parametrize("time", ["held", "sampled", "sampled every 2 ns"])
 @pytest.mark.parametrize("sources", ["g", "h", "gh", ""])
 def test_two_events_of_which_one_has_no_source(time, sources):
-    """A comparison over two events is false while one surely does not occur, else unknown."""
+    """A comparison of two events is false while one certainly does not occur, otherwise unknown."""
     spec = rvmon.loads(
         f"spec s\ntime {time}\nevent g(k: int)\nevent h(m: real)\n"
         "requirement R1\n  upon start\n  then for 5 ns not g.k > h.m\n"
@@ -278,7 +278,7 @@ def test_two_events_of_which_one_has_no_source(time, sources):
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [38, 57])
 def test_a_network_learns_of_an_until_in_order(seed):
-    """What becomes known at once of several stretches is known as of its stamp, not before."""
+    """Truths of several intervals that become known at once have their stamps, not earlier ones."""
     spec = rvmon.loads(
         "spec s\nsignal x, y : real\nrequirement R1\n"
         "  always (x > 3 -> F[0 ns, 16 ns] G[0 ns, 8 ns] y < 3)\n"

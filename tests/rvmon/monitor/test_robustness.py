@@ -20,27 +20,27 @@ S = 1_000_000_000
 
 RISING = "0 x=2 e -p; 1 x=4 e p; 2 x=6 e p; 3 x=8 e p"
 FIGURES = [
-    # In base units; the best value of the window counts, also if it comes behind the decision.
+    # In base units; the best value of the window counts, even after the decision.
     ("held", "upon e then within 3 ns x > 10 cm", "0 x=2 e; 1 x=12; 2 x=30; 9 x=99", 0.2, 0.2),
-    # A trace that is cut at its end leaves windows open.
+    # The end of the trace leaves windows open.
     ("held", "upon e then within 3 ns x > 10 cm", "0 x=3 e; 2", -0.07, INFINITE),
-    # A bool is as far from false as can be.
+    # The distance of a bool is infinite.
     ("held", "upon e then immediately p", "0 p e", INFINITE, INFINITE),
-    # What is not known may be anything.
+    # Unknown values may be anything.
     ("held", "upon e then for 3 ns x < 10 cm", "0 x=3 e; 1 ?x; 2 x=5; 9", -INFINITE, 0.05),
-    # The state that ends an episode is not held against it.
+    # The state that ends an episode does not count for it.
     ("held", "whenever p then immediately x < 10 cm", "0 p x=3; 1 -p x=99", 0.07, 0.07),
-    # What was never known is not taken for true below an operator of the past.
+    # A value that was never known does not count as true below a past operator.
     ("held", "upon start then once (x <= 5 cm and p)", "0 x=1", -INFINITE, INFINITE),
     ("held", "upon start then once (x <= -5 cm and p)", "0 x=1", -INFINITE, -INFINITE),
-    # At the first position nothing has been held, by whatever distance it holds.
+    # At the first position nothing has been held yet, whatever its distance.
     ("held", "upon start then held(not (y > x), 1 ns)", "0 x=0 y=1", -INFINITE, -INFINITE),
-    # What excuses an episode is measured with what was before it.
+    # An excuse of an episode is measured together with the time before it.
     (
         *("sampled", "whenever e and fall(p) then within 4 ns x > v let v = 3 cm"),
         *("0 p x=1; 1 -p e; 2 x=2; 9", -0.01, -0.01),
     ),
-    # What came behind the last tick of a clock is seen by none.
+    # Values after the last tick of a clock are never seen.
     ("sampled every 4 ns", "upon end then x <= 2 cm", "0 x=1; 5 x=3", 0.01, 0.01),
     *(
         ("held", f"upon e then x {op} y", "0 x=500 y=500; 1 y=200; 2 e", low, low)
@@ -55,7 +55,7 @@ FIGURES = [
             ("held", "x >= mean(last(2, x))", 0.01),
             ("sampled", "mean(x, 3 ns) >= 3 cm", 0.02),
             ("sampled every 1 ns", "duration(p, 3 ns) <= 1 ns", -1e-9),
-            # Where it moves between samples, no distance is worked out.
+            # There is no distance if the value moves between samples.
             ("held", "integral(x, 3 ns) / 1 ns >= -1 cm", INFINITE),
         )
     ),
@@ -85,7 +85,7 @@ def test_what_is_held_to_the_end_is_measured_to_the_end_and_a_stream_at_each_sam
 
 
 def test_an_attempt_in_doubt_has_a_figure_if_it_has_a_record():
-    """What nothing may have triggered may owe nothing; what was met in doubt is not measured."""
+    """An attempt in doubt may not exist; one that was met in doubt is not measured."""
     samples = [(0, {"e": None, "x": 3}), (1, {"x": 5})]
     found, met = (
         rvmon.loads(f"{HEAD}upon e then x {op} 10 cm\n").robustness(samples) for op in "><"
@@ -211,8 +211,8 @@ def test_what_captures_values_and_what_does_not_is_given_in_order():
     assert len({one.requirement for t, one in together if t is not None}) == 3
 
 
-def test_what_began_in_doubt_and_became_sure_in_one_call_has_its_own_number():
-    """Not that which it had among those in doubt."""
+def test_an_attempt_that_becomes_certain_in_one_call_has_its_final_number():
+    """Not its number among those in doubt."""
     spec = rvmon.loads(
         "spec s\nsignal q : bool stale after 1 ns\nevent g(k : int)\nrequirement R1\n"
         "  whenever q or g.k == each\n  then true\n  for each each in g.k\n"

@@ -1,4 +1,4 @@
-"""A run that is put away and taken up again goes on as if nothing had happened."""
+"""A run that is saved and restored continues unchanged."""
 
 import copy
 import hashlib
@@ -38,7 +38,7 @@ SAMPLES = [
 
 
 def opened(spec, samples):
-    """The document that the snapshot of a run holds, and what makes a snapshot of another one."""
+    """The document in the snapshot of a run, and a function that makes snapshots of others."""
     monitor = spec.monitor()
     for t, values in samples:
         monitor.step(t, values)
@@ -68,7 +68,7 @@ def test_another_specification_is_refused():
 
 
 def test_forged_bytes_are_refused():
-    """So is, as the instant at which a step was torn, what is not a whole number of ticks."""
+    """Also an instant of an interrupted step that is not a whole number of ticks."""
     spec = rvmon.loads(TEXT)
     document, sealed = opened(spec, SAMPLES[:5])
     instants = (float("inf"), float("nan"), 1.5, "x", 2**62)
@@ -92,7 +92,7 @@ def test_forged_bytes_are_refused():
 
 
 def places_in(value, path=()):
-    """The paths to all that a document holds."""
+    """The paths to all values of a document."""
     found = list(enumerate(value)) if isinstance(value, list) else []
     found += list(value.items()) if isinstance(value, dict) else []
     for key, one in found:
@@ -121,8 +121,8 @@ def test_most_hostile_snapshots_are_refused_at_once():
             continue
 
 
-def test_a_run_that_was_torn_at_its_first_step_is_restored():
-    """Of an interrupt before all samples no instant is told."""
+def test_a_run_interrupted_in_its_first_step_is_restored():
+    """An interrupt before the first sample has no instant."""
     spec = rvmon.loads(TEXT)
     monitor = spec.monitor()
 
@@ -142,8 +142,8 @@ def test_a_run_that_was_torn_at_its_first_step_is_restored():
 
 
 @pytest.mark.parametrize("changing", [63, 64, 65, 128])
-def test_a_run_goes_on_however_many_letters_its_reasons_refer_to(changing):
-    """Letters are stored in pieces; the last one may be full, or hold none yet."""
+def test_a_run_continues_however_many_letters_its_reasons_need(changing):
+    """Letters are stored in pieces; the last piece may be full or empty."""
     spec = rvmon.loads(
         "time sampled every 500 ms\nsignal x, y : real\nevent e\nrequirement R\n  upon e\n"
         "  then F[1 s, 3 s] ((x > 2) U[2 s, 4 s] (y < 4))\n"

@@ -1,4 +1,4 @@
-"""A monitor takes one call at a time, from whatever thread, and refuses the others by name."""
+"""A monitor takes one call at a time, from any thread, and refuses others with an error."""
 
 import signal
 import threading
@@ -27,11 +27,11 @@ def _monitor() -> Monitor:
 
 
 class _Odd(dict[str, object]):
-    """A sample that takes a closer look."""
+    """A sample that needs the slow way."""
 
 
 def _tried(monitor: Monitor, number: int, found: list[str], *, odd: bool = False) -> None:
-    """Take a step, and note what came of it: an item comes whole, a count might be interrupted."""
+    """Take a step and record its result: appending is atomic, counting is not."""
     row = {"x": float(number % 5), "e": True, "p": number % 3 == 0}
     try:
         monitor.step_ns(number, _Odd(row) if odd and number % 2 else row)
@@ -42,7 +42,7 @@ def _tried(monitor: Monitor, number: int, found: list[str], *, odd: bool = False
 
 
 def _numbers(monitor: Monitor, end: int, found: list[str]) -> list[int]:
-    """The numbers of attempts of R2, at most as many as samples were taken, or refused by name."""
+    """The numbers of R2's attempts; each sample was taken or refused with an error."""
     assert set(found) <= {"taken", "OverlapError", "TimeOrderError"}
     report = monitor.finish_ns(end)
     numbers = [one.number for one in report.attempts if one.requirement == "R2"]
@@ -52,8 +52,8 @@ def _numbers(monitor: Monitor, end: int, found: list[str]) -> list[int]:
 
 @pytest.mark.usefixtures("quick_turns")
 @pytest.mark.parametrize("odd", [False, True])
-def test_two_threads_break_nothing_but_their_own_calls(odd: bool) -> None:
-    """Of whose samples every other may take a closer look."""
+def test_two_threads_affect_only_their_own_calls(odd: bool) -> None:
+    """Every second sample may need the slow way."""
     monitor, clock, found = _monitor(), count(1), list[str]()
 
     def work() -> None:

@@ -1,4 +1,4 @@
-"""A monitor that watches for weeks: verdicts so far, callbacks, and records that are not kept."""
+"""A long-running monitor: verdicts so far, callbacks, and records that are dropped."""
 
 import pytest
 from tests.tools.each import each
@@ -27,7 +27,7 @@ requirement B1 "a heart that beats"
 
 
 def samples(count):
-    """Samples a second apart, in which each requirement passes, fails and goes on."""
+    """Samples a second apart, in which each requirement passes, fails and stays open."""
     for i in range(count):
         values = {"x": 5.0 if i % 4 == 1 else 1.0}
         if i == 0:
@@ -51,7 +51,7 @@ def _spec():
     return rvmon.loads(SPEC)
 
 
-def test_verdicts_so_far_are_the_fold_of_what_was_returned(spec):
+def test_verdicts_so_far_fold_the_returned_attempts(spec):
     """F if an attempt failed, else P if one passed, else NT, after each call."""
     monitor = spec.monitor()
     seen = {name: set() for name in spec.requirements}
@@ -200,7 +200,7 @@ def test_what_is_undecided_for_good_is_bounded(name):
 
 @pytest.mark.parametrize("only", [None, ["L1"], ["U1"], ["Y1"], ["B1"]], ids=str)
 def test_a_run_that_keeps_few_records_does_not_grow(spec, only):
-    """Nor does what is noted for reasons: a snapshot is as long after hours as after a while."""
+    """Nor do notes for reasons: a snapshot after hours is as long as after minutes."""
     plain, monitor = (spec.monitor(only=only, keep=3) for _ in "12")
     sizes = []
     for index, (t, values) in enumerate(samples(8_000)):
@@ -252,7 +252,7 @@ requirement T
 
 @each("number", [1 << 63, -(1 << 70)])
 def test_a_number_too_large_is_refused_before_it_waits(number):
-    """Not as the next sample settles it: that one would be refused, and this one lost."""
+    """Otherwise the next sample would be refused for it, and this one lost."""
     monitor = _MERGED.monitor(settle="next")
     monitor.step(0, {"x": 1.0, "n": 0})
     with pytest.raises(TraceError, match="`n` is a number too large for 64 bits"):
@@ -267,8 +267,8 @@ def test_a_number_too_large_is_refused_before_it_waits(number):
     ("ids", "verdict"),
     [((3,), "P"), ((3, 3), "P"), ((50, 50), "F"), ((3, 50), "I"), ((3, 3, 50), "I")],
 )
-def test_of_two_payloads_at_one_instant_is_known_what_is_in_both(ids, verdict):
-    """A file of them is refused, as a step with both is; of merged samples the fields differ."""
+def test_two_payloads_at_one_instant_keep_their_common_fields(ids, verdict):
+    """A file or step with both is refused; in merged samples the other fields are unknown."""
     monitor = _MERGED.monitor(settle="next", only=["S"])
     for number in ids:
         monitor.step(1, {"pick": {"id": number}})

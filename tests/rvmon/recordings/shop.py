@@ -1,4 +1,4 @@
-"""Messages of a shop drawn at random, and all that writes them."""
+"""Random messages of a shop, and writers in several formats."""
 
 import csv
 from collections.abc import Callable, Mapping, Sequence
@@ -52,7 +52,7 @@ def sent_at_random(rng: Any, count: int) -> list[Sent]:
 
 
 def write_csv(path: Path, sent: Sequence[Sent], header: Sequence[str]) -> Path:
-    """The same as rows, of which each holds a message."""
+    """The messages as rows, one for each."""
     with path.open("w", newline="") as file:
         writer = csv.DictWriter(file, ["t_ns", *header])
         writer.writeheader()

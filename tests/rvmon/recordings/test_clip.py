@@ -1,4 +1,4 @@
-"""A piece in every format: entries are copied as they stand, and judged as in the whole."""
+"""Clips in every format: entries are copied unchanged, and verdicts agree with the whole."""
 
 import gzip
 import json
@@ -20,7 +20,7 @@ FAST = "spec s\nsignal speed : real\nrequirement R\n  always speed < {}\n"
 
 
 def clipped(folder, spec, path, *words, out=None):
-    """A piece of a recording, cut by a specification's text."""
+    """A piece of a recording, clipped with a specification."""
     (folder / "s.rv").write_text(spec)
     out = folder / (out or f"out{path.suffix}")
     assert main(["clip", str(folder / "s.rv"), str(path), *words, "-o", str(out)]) == 0
@@ -28,7 +28,7 @@ def clipped(folder, spec, path, *words, out=None):
 
 
 def write_parquet(path, sent):
-    """The same as rows of Parquet, by way of CSV."""
+    """The messages as Parquet, by way of CSV."""
     from pyarrow import csv, parquet
 
     text = write_csv(path.with_suffix(".csv"), sent, HEADER)
@@ -38,7 +38,7 @@ def write_parquet(path, sent):
 
 
 def write_jsonl(path, sent):
-    """The same as lines, of which each holds a message."""
+    """The messages as lines, one for each."""
     lines = []
     for topic, t, content in sent:
         name = topic.strip("/").replace("/", ".")
@@ -66,8 +66,8 @@ FORMATS = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", FORMATS)
-def test_what_is_said_to_be_the_same_is_so(tmp_path, capsys, name):
-    """The piece's verdict on the attempt is that of the whole, or the exit code says otherwise."""
+def test_a_clip_keeps_the_verdict_or_reports_the_difference(tmp_path, capsys, name):
+    """The clip's verdict of the attempt is that of the whole, or the exit code tells."""
     (tmp_path / "shop.rv").write_text(SHOP)
     spec = rvmon.loads(SHOP)
     codes = []
@@ -88,7 +88,7 @@ def test_what_is_said_to_be_the_same_is_so(tmp_path, capsys, name):
             }
             wanted = attempt.triggered, attempt.decided, attempt.verdict, str(attempt.captured)
             is_there = (attempt.requirement, *wanted) in found
-            if attempt.requirement != "R2":  # its episodes may begin with the piece
+            if attempt.requirement != "R2":  # its episodes may start with the clip
                 assert is_there == (codes[-1] == 0)
             if codes[-1] == 0:
                 assert any((one[0], one[2]) == (attempt.requirement, wanted[1]) for one in found)
@@ -174,7 +174,7 @@ RISING = [("/speed", START + t * 10**9, {"data": t / 2}) for t in range(9)]
 
 
 def write_bare(path):
-    """MCAP without an index, whose channels are found by its messages."""
+    """MCAP without an index; channels are found by reading its messages."""
     from mcap.writer import IndexType
 
     bare = {"index_types": IndexType.NONE, "use_summary_offsets": False, "use_statistics": False}
@@ -183,7 +183,7 @@ def write_bare(path):
 
 
 def write_database(path):
-    """A `.db3` without the folder of its bag."""
+    """A `.db3` without its bag's folder."""
     folder = write_ros2(path / "bag", RISING, "sqlite3")
     return next(folder.glob("*.db3")).rename(path / "a.db3")
 
@@ -215,7 +215,7 @@ def test_stamps_of_headers_are_cut_by_what_was_recorded(tmp_path, late):
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["float64", "timestamp[us, UTC]", "int64", "string"])
 def test_parquet_keeps_its_types(tmp_path, kind):
-    """Whatever its stamps are; what is carried has the stamp of the start, or the one before."""
+    """With all kinds of stamps; carried values have the stamp of the start, or the one before."""
     import pyarrow as pa
     from pyarrow import parquet
 
@@ -253,7 +253,7 @@ def test_parquet_keeps_its_types(tmp_path, kind):
 @pytest.mark.law
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
 def test_rows_of_a_piece_are_copied_wherever_blocks_and_lines_end(tmp_path, monkeypatch, end):
-    """Each row takes the lines behind the one before: blank ones, and those within quotes."""
+    """Each row includes the lines after the previous one: blank ones, and those within quotes."""
     for seed in range(40):
         rng = random.Random(seed)
         rows = []

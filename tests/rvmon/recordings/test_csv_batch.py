@@ -1,4 +1,4 @@
-"""CSV in blocks: what rows say, one by one, whatever is odd and wherever a block ends."""
+"""CSV in blocks gives the samples of its rows, whatever is odd and wherever a block ends."""
 
 import csv
 import random
@@ -39,7 +39,7 @@ def quoted(rng: random.Random, cell: str) -> str:
 
 
 def number(rng: random.Random) -> str:
-    """A number as programs write it: short, with all its digits, or with more."""
+    """A number as programs write it: short, exact, or with superfluous digits."""
     exact = struct.unpack("d", rng.randbytes(8))[0]
     return rng.choice(
         [
@@ -80,7 +80,7 @@ def csv_text(rng: random.Random, oddness: float) -> str:
 
 
 def read(samples) -> list[tuple[int, str]]:
-    """The samples of a recording, or of what there was before its fault, and that."""
+    """The samples of a recording, and its error, if any, after the samples before it."""
     made = []
     try:
         made += ((one.t, repr(sorted(one.values.items()))) for one in samples)
@@ -90,7 +90,7 @@ def read(samples) -> list[tuple[int, str]]:
 
 
 def samples_of_csv(spec: rvmon.Spec, path: Path):
-    """The reference: a file read row by row; errors are named as those of a recording are."""
+    """The reference reads a file row by row; errors have the file's name."""
     try:
         with open(path, encoding="utf-8-sig", newline="") as text:
             rows = split_lines(text)
@@ -104,7 +104,7 @@ def samples_of_csv(spec: rvmon.Spec, path: Path):
 
 
 def of_pieces(path: Path):
-    """The samples of a file that is read in columns, in which equal stamps are not merged."""
+    """The samples of a file read in columns, without merging equal stamps."""
     opened = SPEC.recording(path)
     for piece in opened.pieces():
         if isinstance(piece, Batch):

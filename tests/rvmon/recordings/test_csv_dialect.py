@@ -1,4 +1,4 @@
-"""CSV as other tools write it gives the records of plain CSV."""
+"""CSV in the dialects of other tools gives the records of plain CSV."""
 
 import random
 from itertools import islice
@@ -42,7 +42,7 @@ NAMES = ("t_ns", "speed", "mode", "stop")
 
 
 def written(rows, sign=",", *, names=NAMES, point=".", end="\n", above=(), within=()):
-    """Rows as a tool writes them: other signs, names with units, lines above and between rows."""
+    """Rows in a dialect: other separators, names with units, lines above and between rows."""
     lines = [sign.join(names)]
     for t, *cells in rows:
         stamp = f"{t // 10**9}.{t % 10**9:09d}" if names[0] == "t" else t
@@ -97,7 +97,7 @@ def test_blanks_in_a_property_and_in_labels_separate_nothing(tmp_path):
 
 
 def test_blanks_and_a_header_that_is_a_comment(tmp_path):
-    """As `numpy.savetxt` and recorders of trajectories write."""
+    """As written by `numpy.savetxt` and by trajectory recorders."""
     spec = rvmon.loads("spec s\nsignal x, y : real\nrequirement R\n always x + y < 5")
     (tmp_path / "a.csv").write_text("# t x y\n0 1 2\n0.5  2   2.5\n1 3 4\n")
     assert spec.evaluate(tmp_path / "a.csv").attempts[0].decided == 10**9

@@ -1,4 +1,4 @@
-"""Stretches of a text are read ahead by threads; nobody sees that but by the clock."""
+"""Chunks of a text are read ahead by threads, without a visible difference."""
 
 import threading
 from collections import deque
@@ -14,13 +14,13 @@ NUMBER = "0.1000000000000000055511151231257827021181583404541015625"
 
 
 def named(name):
-    """The threads that read."""
+    """The reading threads."""
     return [one for one in threading.enumerate() if one.name.startswith(name)]
 
 
 @pytest.fixture
 def written(tmp_path, monkeypatch):
-    """A recording of several stretches, and the place to damage it at."""
+    """A recording of several chunks, and the place to damage."""
     monkeypatch.setattr(places, "BLOCK", 4096)
     path = tmp_path / "a.csv"
     path.write_text("t,x\n" + "".join(f"{t},{NUMBER}\n" for t in range(1000)))
@@ -72,8 +72,8 @@ def test_faults_of_who_reads_are_raised_in_their_turn():
 @pytest.mark.parametrize("separator", [",", ";", " "])
 @pytest.mark.parametrize("ending", ["\n", "\r"])
 @pytest.mark.parametrize("block", [1 << 20, 4096])
-def test_a_block_that_was_never_written_is_told(tmp_path, monkeypatch, separator, ending, block):
-    """Of the line in which it begins and the one in which it ends it makes a row as any other."""
+def test_a_block_never_written_is_reported(tmp_path, monkeypatch, separator, ending, block):
+    """It joins the lines at its start and end to a row that looks valid."""
     monkeypatch.setattr(places, "BLOCK", block)
     rows = [separator.join((str(t), "5" if t == 601 else "1", "note")) for t in range(1000)]
     text = ending.join((separator.join(("t", "x", "by")), *rows, "")).encode()

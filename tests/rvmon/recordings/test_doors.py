@@ -1,4 +1,4 @@
-"""The same content gives the same report, whatever holds it."""
+"""The same content gives the same report from every format."""
 
 import json
 import random
@@ -41,7 +41,7 @@ requirement R3
 def bare(report):
     """Verdicts, records without reasons, and input health.
 
-    Of what no requirement reads the core does not tell that it went stale. The hint that unknown
+    The core does not report staleness of names that no requirement reads. The hint that unknown
     values alternate with known ones is of rows, before those of equal stamps are merged.
     """
     attempts = [
@@ -126,7 +126,7 @@ def test_what_is_not_declared_so_is_refused(name, wrong):
 )
 @each("header", ["", "max delay 1 s\n"])
 def test_a_label_that_is_not_declared_is_named_with_its_line(tmp_path, name, text, place, header):
-    """Within a column, and row by row, as where late rows are put in order."""
+    """Within a column, and row by row, as when late rows are sorted."""
     (tmp_path / name).write_text(text)
     with pytest.raises(TraceError, match=f"^{place}sample at 1 s: `mode`: expected one of"):
         judged(rvmon.loads(BASE.replace("signal", f"{header}signal", 1)), tmp_path / name)
@@ -177,7 +177,7 @@ def test_a_value_may_stand_for_no_update(tmp_path):
             assert told(base(), table, no_update=gap) == told(base(), plain)
     (tmp_path / "a.csv").write_text("t,mode,speed,on\n0,idle,1,1\n1,-,-,0\n2,-,-,-")
     rows = base().recording(tmp_path / "a.csv", no_update="-")
-    assert [len(one.values) for one in rows] == [3, 1, 0]  # the last has no end of a line
+    assert [len(one.values) for one in rows] == [3, 1, 0]  # the last line has no end
     assert judged(base(), MERGED, no_update=NAN).verdicts["R1"] == "P"
     for wrong in ({"nan": "gap"}, {"no_update": [1]}):
         with pytest.raises(
@@ -187,8 +187,8 @@ def test_a_value_may_stand_for_no_update(tmp_path):
             judged(base(), MERGED, **wrong)
 
 
-def test_the_command_line_reads_nan_as_it_is_told(tmp_path, says):
-    """`--nan no-update` holds the value before; without it the finding names the option."""
+def test_the_command_line_reads_nan_as_requested(tmp_path, says):
+    """`--nan no-update` holds the previous value; without it the finding names the option."""
     spec, trace = tmp_path / "a.rv", tmp_path / "a.csv"
     spec.write_text("spec s\nsignal x : real\nrequirement R1\n  always x < 3\n")
     trace.write_text("t,x\n" + "".join(f"{t},{('1', 'nan')[t % 2]}\n" for t in range(8)))
@@ -253,7 +253,7 @@ def test_frames_of_pandas():
 
 @each("stamps", ["t_ns", "t_ms", "t"])
 def test_columns_of_one_array(stamps):
-    """They do not lie one behind the other in memory, in frames of one type likewise."""
+    """They are not contiguous in memory, as in data frames of one type."""
     one = np.array([[0, 1], [10, 2], [20, 9]])
     own, apart = (
         dict(zip((stamps, "speed"), rows.T, strict=True)) for rows in (one, one.copy("F"))

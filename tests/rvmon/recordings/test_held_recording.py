@@ -1,4 +1,4 @@
-"""Recordings that are held, and those that are read again as they are too long for that."""
+"""Recordings held in memory, and longer ones that are read again."""
 
 import os
 
@@ -26,7 +26,7 @@ def test_it_is_the_same_each_time_however_much_is_held(monkeypatch, most):
     assert recording
     assert recording[0] is SAMPLES[0]
     assert readings == [0]
-    next(recording.pieces())  # one that is not gone on with
+    next(recording.pieces())  # an iteration that is abandoned
     for _ in range(3):
         assert [*recording] == SAMPLES
         assert recording[3] is SAMPLES[3]
@@ -58,7 +58,7 @@ def test_pages_and_reasons_are_those_of_a_recording_that_is_held(monkeypatch, tm
     (tmp_path / "a.csv").write_text("t,gap,near\n" + rows)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(places, "BLOCK", 256)
-    monkeypatch.setattr(attempt_panels, "MOST_DISSECTED", 20)  # of more, no page shows the parts
+    monkeypatch.setattr(attempt_panels, "MOST_DISSECTED", 20)  # pages show no parts of more rows
     words = [1, "run", "a.rv", "a.csv", "--report", "pages"], [0, "why", "a.rv", "a.csv", "R"]
     found = []
     for most in (1_000_000, 50):
@@ -75,7 +75,7 @@ def appended(path):
 
 
 def replaced(path):
-    """By another file of the same size and time."""
+    """Replaced by another file of the same size and time."""
     other, before = path.with_name("other.csv"), path.stat()
     other.write_text(path.read_text().replace("1.5", "2.5"))
     os.utime(other, ns=(before.st_atime_ns, before.st_mtime_ns))

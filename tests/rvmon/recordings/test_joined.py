@@ -1,4 +1,4 @@
-"""Several files, or tables, of one log: joined by time, each with its own absence."""
+"""Several files or tables of one log, joined by time; each has its own missing names."""
 
 import random
 
@@ -36,12 +36,12 @@ COLUMNS = {
 
 
 def written(folder, rng, most=40):
-    """A log as a file per topic, and the same in one file whose rows leave out what is not said."""
+    """A log as a file per topic, and as one file with empty cells."""
     files, whole = {}, []
     for topic in dict.fromkeys(topic for topic, _ in COLUMNS.values()):
         names = [name for name, (own, _) in COLUMNS.items() if own == topic]
         lines = [",".join(["t", *(name.removeprefix("status.") for name in names)])]
-        draw = rng.sample if rng.random() < 0.7 else rng.choices  # with instants that come again
+        draw = rng.sample if rng.random() < 0.7 else rng.choices  # with repeated instants
         for step in sorted(draw(range(most), k=rng.randint(0, most // 2))):
             cells = {name: COLUMNS[name][1](rng) if rng.random() < 0.9 else "" for name in names}
             lines.append(",".join([f"{step / 10}", *cells.values()]))
@@ -62,7 +62,7 @@ def attempts(report):
 
 @pytest.mark.law
 def test_joined_files_give_what_one_file_with_empty_cells_gives(tmp_path, monkeypatch):
-    """Nothing of one file is carried into the rows of another, row by row or in blocks."""
+    """No value of one file is carried into rows of another, row by row or in blocks."""
     for seed in range(12):
         rng = random.Random(seed)
         monkeypatch.setattr(places, "BLOCK", rng.choice([300, 3_000, 1 << 20]))
@@ -116,7 +116,7 @@ def test_a_name_of_two_files_is_asked_for(tmp_path):
 
 
 def test_a_name_that_no_file_has_is_missing(tmp_path):
-    """A file that has only a header has its names, and never says anything of them."""
+    """A file with a header only has its names, without values."""
     (tmp_path / "a.csv").write_text("t,speed\n0,1\n")
     (tmp_path / "b.csv").write_text("t,mode\n")
     files = [tmp_path / "a.csv", tmp_path / "b.csv"]
@@ -129,7 +129,7 @@ def test_a_name_that_no_file_has_is_missing(tmp_path):
 
 
 def test_files_of_several_formats_are_joined(tmp_path):
-    """JSON lines do not say what may come, so that an event that never comes did not happen."""
+    """JSON lines do not declare names, so an event without a line did not occur."""
     (tmp_path / "a.csv").write_text("stamp,speed\n0,1\n2000,3\n")
     (tmp_path / "b.jsonl").write_text('{"stamp": 1000, "stop": true}\n')
     spec = rvmon.loads(

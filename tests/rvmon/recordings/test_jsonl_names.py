@@ -1,4 +1,4 @@
-"""A name that stands twice in an object of JSON: nobody can say which one counts."""
+"""A name that is twice in a JSON object is ambiguous."""
 
 import json
 import random

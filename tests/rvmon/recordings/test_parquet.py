@@ -1,4 +1,4 @@
-"""Parquet files of odd columns, and damaged ones: read as rows are, or refused with the cause."""
+"""Parquet files with odd columns, and damaged ones: read like rows, or refused with the cause."""
 
 import struct
 
@@ -84,8 +84,8 @@ def test_sizes_and_offsets_that_overflow_are_refused(most, tmp_path):
     assert refused
 
 
-def test_a_value_that_is_not_what_its_checksum_says_is_told(tmp_path):
-    """Pages have one, if their writer gave it; the value would be a number as any other."""
+def test_a_page_with_a_wrong_checksum_is_reported(tmp_path):
+    """Pages have checksums if their writer set them; the damaged value would be a valid number."""
     path = tmp_path / "a.parquet"
     table = pa.table({"t": [0.0, 1.0], "x": [1.25, 1.5]})
     parquet.write_table(

@@ -1,4 +1,4 @@
-"""Recordings that are packed, that lie in folders, or at addresses."""
+"""Recordings that are compressed, in folders, or at addresses."""
 
 import gzip
 import http.server
@@ -66,8 +66,8 @@ def test_a_packed_file_that_was_cut_off_is_told(tmp_path, ending, says):
 
 
 @pytest.mark.parametrize("ending", PACKERS)
-def test_what_cannot_be_unpacked_is_told(tmp_path, spec, ending):
-    """Its checksum stands at its end, behind all that could be unpacked."""
+def test_damaged_compression_is_reported(tmp_path, spec, ending):
+    """The checksum is at the end, after all data that could be unpacked."""
     path = tmp_path / f"a.csv{ending}"
     data = bytearray(PACKERS[ending](CSV.encode()))
     data[{".gz": -8, ".zst": -1}[ending]] ^= 1
@@ -159,7 +159,7 @@ def test_a_folder_without_recordings_is_told(tmp_path, pattern):
 
 class Quiet(http.server.SimpleHTTPRequestHandler):
     def log_message(self, *words):
-        """Say nothing."""
+        """Logs nothing."""
 
 
 @pytest.fixture
@@ -168,7 +168,7 @@ def server(tmp_path):
     pytest.importorskip("aiohttp")
     handler = partial(Quiet, directory=str(tmp_path))
     with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as served:
-        thread = Thread(target=served.serve_forever, args=(0.01,))  # how soon it ends
+        thread = Thread(target=served.serve_forever, args=(0.01,))  # shutdown time
         thread.start()
         yield f"http://127.0.0.1:{served.server_port}"
         served.shutdown()
@@ -198,7 +198,7 @@ def test_what_is_put_at_an_address_anew_is_read_anew(tmp_path, spec, server):
 
 @pytest.mark.slow
 def test_an_address_without_a_recording_does_not_stop_the_others(tmp_path, server, says):
-    """It is a bad recording, as a file that is missing."""
+    """It counts as a bad recording, like a missing file."""
     (tmp_path / "door.rv").write_text(SPEC)
     (tmp_path / "a.csv").write_text(CSV)
     words = ["run", str(tmp_path / "door.rv"), f"{server}/none.csv", f"{server}/a.csv"]

@@ -42,8 +42,8 @@ UNENDED = {
 
 @each("end", ["", "\n", "\r\n"])
 @each("form", UNENDED)
-def test_what_a_last_line_without_its_end_says_is_unknown(tmp_path, form, end):
-    """`12` may be what was written of `125`: however the file lies there, that is told."""
+def test_a_last_line_without_its_end_is_unknown(tmp_path, form, end):
+    """`12` may be the start of `125`: this is reported for every kind of file."""
     name, made = UNENDED[form]
     recording, samples = read(tmp_path, name, made(f"t,ok,n\n0,1,1\n1,1,12{end}"))
     assert samples[-1] == (10**9, {"ok": True, "n": 12 if end else None})
@@ -52,7 +52,7 @@ def test_what_a_last_line_without_its_end_says_is_unknown(tmp_path, form, end):
 
 
 def test_of_a_last_line_without_its_end_only_the_last_cell_is_unknown(tmp_path):
-    """Of a stamp there all is; a truth value that is there is whole, one that is not may be."""
+    """Everything at an incomplete stamp is unknown; a bool can be recognised as complete."""
     assert read(tmp_path, "a.csv", "n,t,ok\n7,1,1")[1] == [(10**9, {"n": 7, "ok": True})]
     assert read(tmp_path, "a.csv", "n,t,ok\n7,1,")[1] == [(10**9, {"n": 7, "ok": None})]
     assert read(tmp_path, "a.csv", "t,n,go\n1,7,")[1] == [(10**9, {"n": 7, "go": None})]
@@ -65,8 +65,8 @@ def test_of_a_last_line_without_its_end_only_the_last_cell_is_unknown(tmp_path):
     assert list(FileRecording(tmp_path / "a.csv", two)) == [Sample(1_000_000_005, {"s": None})]
 
 
-def test_a_signal_that_ignores_nan_is_refused_where_a_last_line_has_no_end(tmp_path):
-    """What it would pass over was lost; nothing lost is green."""
+def test_a_signal_that_ignores_nan_is_refused_with_an_incomplete_last_line(tmp_path):
+    """It would ignore a lost value, and nothing lost may pass."""
     spec = rvmon.loads("spec s\nsignal x : real ignore NaN\nrequirement R1\n  always x < 3\n")
     (tmp_path / "a.csv").write_text("t,x\n0,1\n1,2")
     with pytest.raises(rvmon.TraceError, match="line 3: it has no end: if it was cut off, `x`"):
@@ -150,8 +150,8 @@ def test_bad_input_is_named_with_file_and_line(tmp_path, name):
     assert file in str(caught.value)
 
 
-def test_what_stands_before_a_broken_line_is_given_out(tmp_path):
-    """All is given out but the last stamp, of which the broken line might have been a part."""
+def test_samples_before_a_broken_line_are_returned(tmp_path):
+    """All but those of the last stamp, to which the broken line may belong."""
     path = tmp_path / "a.csv"
     path.write_text("t,n\n0,1\n1,2\n2,x\n")
     stream = iter(FileRecording(path, SCHEMA))
@@ -228,7 +228,7 @@ def test_a_line_that_is_too_long_is_named(tmp_path, monkeypatch, name, row):
 
 
 def test_a_small_text_is_read_once(tmp_path):
-    """What stood there when the header was read is judged; going through it again reads it."""
+    """The content at the time of the header counts; another iteration reads the file again."""
     path = tmp_path / "a.csv"
     path.write_text("t,ok\n0,1\n1,0\n")
     recording = FileRecording(path, SCHEMA)
@@ -239,7 +239,7 @@ def test_a_small_text_is_read_once(tmp_path):
 
 
 def test_recordings_with_different_headers_are_read_by_their_own(tmp_path):
-    """What one header said of a schema is not taken for what another says."""
+    """The layout of one header is not reused for another one."""
     texts = ["t,ok,n\n0,1,3\n", "t,n,ok\n0,4,0\n", "t,ok,n\n0,0,5\n"]
     found = [read(tmp_path, f"{place}.csv", text)[1] for place, text in enumerate(texts)]
     assert [samples[0][1] for samples in found] == [
@@ -249,8 +249,8 @@ def test_recordings_with_different_headers_are_read_by_their_own(tmp_path):
     ]
 
 
-def test_rows_before_a_broken_end_of_a_text_are_given_out(tmp_path):
-    """A character that is cut off ends the text: the rows above it were said."""
+def test_rows_before_a_broken_end_of_a_text_are_returned(tmp_path):
+    """An incomplete character ends the text; the rows before it count."""
     path = tmp_path / "a.csv"
     path.write_bytes(b"t,ok\n0,1\n1,0\n2,\xc3")
     samples = []
@@ -261,7 +261,7 @@ def test_rows_before_a_broken_end_of_a_text_are_given_out(tmp_path):
 
 @pytest.mark.parametrize("name", ["a.csv", "a.parquet"])
 def test_a_pipe_of_columns_is_refused(tmp_path, name):
-    """A table is looked at before it is read, for which a pipe would be gone."""
+    """A table is examined before it is read, which a pipe does not allow."""
     os.mkfifo(tmp_path / name)
     with pytest.raises(TraceError, match=f"{name}: is a pipe: pipes hold JSON lines"):
         FileRecording(tmp_path / name, SCHEMA)

@@ -1,4 +1,4 @@
-"""Stamps in the units that recordings have them in."""
+"""Stamps in the units of recordings."""
 
 import numpy as np
 import pyarrow
@@ -59,7 +59,7 @@ def test_every_door_reads_every_unit_exactly(spec, tmp_path, stamps, unit, end):
         ("12", "iso", "not a date and time of ISO 8601"),
         ("9999-01-01", "iso", "out of range"),
         ("9" * 20, "ms", "out of range"),
-        # The unit that was meant is told.
+        # The intended unit is named.
         ("1714557600123", None, "Are these milliseconds. `--time t:ms`"),
         ("1714557600123456", None, "Are these microseconds. `--time t:us`"),
         ("1714557600123456789", None, "Are these nanoseconds. `--time t:ns`"),
@@ -90,7 +90,7 @@ def doubts(spec, trace, time=None):
     ],
 )
 def test_steps_that_look_like_milliseconds_are_doubted(spec, tmp_path, stamps, doubtful):
-    """Whole steps of 5 s or more, or a thousand rows of 10,000 s: through every door."""
+    """Whole steps of 5 s or more, or a thousand rows of 10,000 s, in every format."""
     table = {"t": stamps, "x": [1.0] * len(stamps)}
     arrays = {name: np.array(column) for name, column in table.items()}
     (tmp_path / "a.csv").write_text("t,x\n" + "".join(f"{t},1\n" for t in stamps))
@@ -146,7 +146,7 @@ def of_clocks(report):
 
 
 def test_one_stamp_of_another_clock_is_a_finding(spec, tmp_path):
-    """Of 1970, as messages have it that nobody stamped: whatever holds them, wherever it comes."""
+    """One of 1970, as in messages without a stamp: in every format, at any position."""
     since_1970 = 1_700_000_000
     for stamps in ([5, since_1970, since_1970 + 1], [since_1970, since_1970 + 2**30]):
         table = {"t": stamps, "x": [1.0] * len(stamps)}
@@ -184,8 +184,8 @@ def pandas_frames(module):
     yield module.DataFrame({"t": dates.tz_localize("UTC").tz_convert("Asia/Tokyo"), "x": X})
 
 
-def test_columns_of_dates_are_read_as_what_they_are(spec, tmp_path):
-    """Without being told: of NumPy and Arrow, pandas and polars, and of Parquet."""
+def test_columns_of_dates_are_recognised(spec, tmp_path):
+    """Without an option, in NumPy, Arrow, pandas, polars and Parquet."""
     table = pyarrow.table({"t": pyarrow.array(DATES), "x": X})
     parquet.write_table(table, tmp_path / "a.parquet")
     polars = pytest.importorskip("polars").DataFrame({"t": DATES, "x": X})

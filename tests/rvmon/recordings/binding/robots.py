@@ -17,7 +17,7 @@ Kind = tuple[str, Mapping[str, Any]]
 
 @dataclass(frozen=True)
 class Robot:
-    """A recording, a specification, and the binding that is right.
+    """A recording, a specification, and the correct binding.
 
     Attributes:
         topics: type and content of the messages of each topic.
@@ -82,7 +82,7 @@ def _kind(told: Any) -> Kind:
 
 
 def _places(told: str) -> tuple[str, ...]:
-    """The places that are right; `speeds TOPIC PATH` are those of how fast something drives."""
+    """The correct places; `speeds TOPIC PATH` stands for those of a driving speed."""
     if not told.startswith("speeds "):
         return tuple("" if one == "open" else one for one in told.split(" | ")) if told else ()
     _, topic, *rest = told.split()

@@ -1,4 +1,4 @@
-"""What a binding makes of messages, and what is wrong with it."""
+"""Bindings applied to messages, and faulty bindings."""
 
 import math
 
@@ -91,7 +91,7 @@ SENT = [
 
 @pytest.fixture
 def read(tmp_path):
-    """What a recording says under a binding."""
+    """The samples of a recording under a binding."""
 
     def samples(binding=BINDING, sent=SENT, writer=write_ros1, name="a.bag", **options):
         (tmp_path / "base.toml").write_text(binding)
@@ -134,7 +134,7 @@ def test_a_binding_computes_converts_and_notes_changes(read, name, writer):
 
 
 def test_all_elements_of_an_array_count(read):
-    """Those that are NaN are no measurements; without one the value is unknown."""
+    """NaN elements are not measurements; without any other the value is unknown."""
     nan, far = float("nan"), float("inf")
     scans = [[2.0, nan, 0.75], [], [nan], [far, far], [3.0]]
     sent = [("/base/scan", START + t, {"ranges": one}) for t, one in enumerate(scans)]
@@ -155,8 +155,8 @@ def test_what_is_infinite_divided_by_0_is_unknown(read):
     assert found == [None, far, 0.0, None, None, None]
 
 
-def test_headers_say_when(read):
-    """All stamps of headers count, or those of one name; messages are sorted by them."""
+def test_stamps_come_from_headers(read):
+    """Stamps of all headers, or for one name; messages are sorted by them."""
     header = BINDING.split("[bind.nearest]")[0]
     odometry = [one for one in SENT if one[0] == "/base/odom"]
     folders = iter("abcdef")

@@ -1,4 +1,4 @@
-"""What is proposed for recordings as robots make them is right, or left open."""
+"""Bindings proposed for recordings of robots are correct or left open."""
 
 import math
 import tomllib
@@ -39,8 +39,8 @@ def flat(tables, prefix=""):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ROBOTS)
-def test_what_is_proposed_is_right_or_left_open(name, tmp_path, capsys):
-    """Right for all that a recording says; open for the rest; it passes `check`, and runs."""
+def test_proposals_are_correct_or_left_open(name, tmp_path, capsys):
+    """Correct where the recording decides, open otherwise; the result passes `check`, and runs."""
     robot = ROBOTS[name]
     spec, bag = write(robot, tmp_path)
     status = main(["init", bag, "--for", spec])
@@ -97,8 +97,8 @@ def test_turns_of_a_quaternion(tmp_path, turn, value):
 
 
 @pytest.mark.slow
-def test_a_unit_that_a_comment_says_counts_in_a_binding(tmp_path, capsys):
-    """Milliamps that are declared amps are an error, unless the binding says what they are."""
+def test_a_unit_in_a_comment_counts_in_a_binding(tmp_path, capsys):
+    """Milliamps for a signal in amps are an error unless the binding names the unit."""
     spec, bag = write(ROBOTS["create3"], tmp_path)
     binding = tmp_path / "a.toml"
     place = '[bind.left_wheel_current]\ntopic = "/wheel_status"\nvalue = "current_ma_left"\n'
@@ -121,8 +121,8 @@ BO_ 256 Drive: 8 ECU
 
 
 @pytest.mark.slow
-def test_a_scale_that_nobody_knows_is_left_open(tmp_path, capsys):
-    """A unit that is none here, a whole number that is too large for the plain unit."""
+def test_an_unknown_scale_is_left_open(tmp_path, capsys):
+    """An unknown unit, or a whole number too large for the plain unit."""
     pytest.importorskip("cantools")
     (tmp_path / "a.dbc").write_text(DATABASE)
     (tmp_path / "a.log").write_text("".join(f"({t}.0) can0 100#0A0A60EA05000000\n" for t in (1, 2)))
@@ -142,8 +142,8 @@ def test_a_scale_that_nobody_knows_is_left_open(tmp_path, capsys):
     }
 
 
-def test_a_number_that_never_changes_is_no_clear_choice(tmp_path, says):
-    """What drives on a plane says of its pitch that it is 0, and another one says what it is."""
+def test_a_constant_number_is_not_a_clear_choice(tmp_path, says):
+    """A planar vehicle reports a pitch of 0, while another topic has the real one."""
     imu = [{"angular_velocity": {"y": rate}} for rate in (0.1, 0.2)]
     sent = [("/odom", START, {}), ("/imu", START + 1, imu[0]), ("/imu", START + 2, imu[1])]
     types = {"/odom": "nav_msgs/msg/Odometry", "/imu": "sensor_msgs/msg/Imu"}

@@ -24,7 +24,7 @@ TYPE = 'type = "nav_msgs/msg/Odometry"\n'
 
 
 def told(tmp_path, text, spec=SPEC):
-    """What a binding is told before there is a recording, and what with one that has no types."""
+    """The errors of a binding without a recording, and with a recording without types."""
     path = tmp_path / "base.toml"
     path.write_text(text)
     with pytest.raises(RvmonError) as error:
@@ -89,7 +89,7 @@ def test_a_payload_is_compared_too(tmp_path):
 
 
 def test_numbers_may_change_the_scale(tmp_path):
-    """A robot that sends otherwise than the tables say calculates, and says the unit."""
+    """A binding for a robot with unusual units computes, and names the unit."""
     path = tmp_path / "base.toml"
     value = "1 * twist.twist.linear.x"
     path.write_text(ODOM.format(name="speed", type=TYPE, value=value, more='unit = "km/h"'))

@@ -25,7 +25,7 @@ def packed(root: Slots) -> bytes:
 
 
 def _put(data: bytearray, value: Any) -> int:
-    """Write a table, a text or a vector behind what is there, and say where it begins."""
+    """Append a table, a text or a vector; returns where it starts."""
     if isinstance(value, bytes):
         data += value
         return len(data) - len(value)
@@ -58,7 +58,7 @@ def _lead(data: bytearray, at: int, value: Any) -> None:
 
 
 def schema_of(name: str, fields: Mapping[str, Any]) -> bytes:
-    """The binary schema of a table with such fields, as `flatc` makes it.
+    """The binary schema of a table with these fields, as `flatc` makes it.
 
     Args:
         name: of the table.
@@ -85,7 +85,7 @@ def _object(name: str, fields: Mapping[str, Any], objects: list[Slots]) -> int:
 
 
 def message_of(fields: Mapping[str, Any]) -> Slots:
-    """A message with these fields; zero is not sent."""
+    """A message with these fields; zeros are omitted."""
     slots: dict[int, Any] = {}
     for number, value in enumerate(fields.values()):
         if type(value) in KINDS:
@@ -101,7 +101,7 @@ def message_of(fields: Mapping[str, Any]) -> Slots:
 
 
 def write_flatbuffer_mcap(path: Path, sent: Sequence[Sent]) -> Path:
-    """An MCAP file of FlatBuffers; the first message of a topic says which fields it has."""
+    """An MCAP file of FlatBuffers; the first message of a topic defines its fields."""
 
     def described(topic: str, content: Content) -> tuple[str, str, bytes]:
         name = f"shop.{topic.strip('/').title()}"

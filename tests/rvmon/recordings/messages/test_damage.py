@@ -39,7 +39,7 @@ SENT = [
 
 
 def written(folder, name):
-    """A recording, and the file of it that can be damaged."""
+    """A recording, and its file to damage."""
     path = OF_MESSAGES[name](folder / name, SENT)
     return path, next(iter(path.glob(f"{name}.*"))) if path.is_dir() else path
 
@@ -99,8 +99,8 @@ def test_what_is_no_bag_is_told(tmp_path, spec, name, data):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("is_folder", [True, False])
-def test_a_bag_whose_recorder_was_killed_is_told(tmp_path, spec, is_folder):
-    """What it wrote last is in a file beside, which no reader of bags looks at."""
+def test_a_bag_of_a_killed_recorder_is_reported(tmp_path, spec, is_folder):
+    """Its last data is in a second file that readers of bags ignore."""
     folder, file = written(tmp_path, "sqlite3")
     with closing(sqlite3.connect(file)) as bag:
         bag.execute("PRAGMA journal_mode = WAL")
@@ -109,12 +109,12 @@ def test_a_bag_whose_recorder_was_killed_is_told(tmp_path, spec, is_folder):
         path = folder if is_folder else file
         with pytest.raises(rvmon.TraceError, match=rf"a part of it is in {file.name}-wal"):
             spec.evaluate(path)
-    folder.joinpath("metadata.yaml").unlink()  # SQLite closed it; that counts more
+    folder.joinpath("metadata.yaml").unlink()  # SQLite closed it, which takes precedence
     assert spec.evaluate(file).verdicts["R1"] == "P"
 
 
-def test_an_encrypted_bag_is_told(tmp_path, spec):
-    """ROS 1 can encrypt bags; nobody here has the key."""
+def test_an_encrypted_bag_is_reported(tmp_path, spec):
+    """ROS 1 can encrypt bags; the key is not available."""
     fields = {
         "op": b"\3",
         "index_pos": struct.pack("<Q", 4117),
@@ -190,19 +190,19 @@ def test_options_of_columns_are_none_of_messages(tmp_path, spec):
         spec.evaluate(path, clock="wall")
 
 
-def test_json_that_does_not_fit_is_told_with_its_message(tmp_path, spec):
-    """A file of JSON may say something else in each message."""
+def test_json_of_the_wrong_type_is_reported_with_its_message(tmp_path, spec):
+    """JSON messages of a topic may differ."""
     sent = [("/speed", START, {"data": 1.0}), ("/speed", START + 1, {"data": "fast"})]
     path = write_json_mcap(tmp_path / "a.mcap", sent)
     with pytest.raises(rvmon.TraceError, match=r"message 2 of /speed: `speed`: `fast` is not"):
         spec.evaluate(path, allow_missing=True)
 
 
-def test_a_size_beyond_the_memory_is_told(tmp_path, spec):
-    """Of the first record of an MCAP file of ROS 2: the file is named, not the memory alone."""
+def test_a_size_beyond_the_memory_is_reported(tmp_path, spec):
+    """In the first record of an MCAP file of ROS 2: the error names the file."""
     path, file = written(tmp_path, "mcap")
     data = bytearray(file.read_bytes())
-    # An opcode and eight bytes of length follow the magic number; the last is the highest.
+    # An opcode and eight bytes of length, little-endian, follow the magic number.
     data[8 + 8] = 0x1E
     file.write_bytes(data)
     with pytest.raises(rvmon.TraceError, match="a size in it is beyond the memory"):
@@ -214,8 +214,8 @@ def test_a_size_beyond_the_memory_is_told(tmp_path, spec):
     [{}, {"index_types": IndexType.NONE}, {"use_chunking": False, "enable_data_crcs": True}],
     ids=["listed chunks", "chunks", "no chunks"],
 )
-def test_a_value_that_is_not_what_its_checksum_says_is_told(tmp_path, spec, options):
-    """A chunk of MCAP has one, or all data; the value would be a number as any other."""
+def test_a_value_with_a_wrong_checksum_is_reported(tmp_path, spec, options):
+    """MCAP has checksums of chunks or of all data; the damaged value would be a valid number."""
     options = {"compression": CompressionType.NONE, **options}
     path = write_json_mcap(tmp_path / "a.mcap", SENT, **options)
     data = path.read_bytes()
@@ -234,8 +234,8 @@ def test_a_summary_may_lack_what_the_file_has(tmp_path, spec, lacking):
 
 
 @pytest.mark.slow
-def test_a_bag_that_lists_fewer_files_or_ends_later_than_it_says_is_told(tmp_path, capsys, says):
-    """As of a recorder that was killed in its second file, or ended as one that was."""
+def test_a_bag_with_more_files_or_a_later_end_than_listed_is_reported(tmp_path, capsys, says):
+    """As from a recorder that was killed in its second file."""
     fast = ("/speed", START + 9 * 10**9, {"data": 9.0})
     path, file = written(tmp_path, "sqlite3")
     other = write_ros2(tmp_path / "other", [*SENT, fast], "sqlite3")
@@ -249,8 +249,8 @@ def test_a_bag_that_lists_fewer_files_or_ends_later_than_it_says_is_told(tmp_pat
     assert "metadata.yaml does not list sqlite3_1.db3" in says(2, *command).err
 
 
-def test_a_summary_that_is_not_what_its_checksum_says_is_told(tmp_path, spec):
-    """It has the number of messages, and the end of the recording."""
+def test_a_summary_with_a_wrong_checksum_is_reported(tmp_path, spec):
+    """The summary has the number of messages and the end of the recording."""
     path = write_json_mcap(tmp_path / "a.mcap", SENT)
     data = bytearray(path.read_bytes())
     data[-60] ^= 1
@@ -260,8 +260,8 @@ def test_a_summary_that_is_not_what_its_checksum_says_is_told(tmp_path, spec):
 
 
 @pytest.mark.slow
-def test_a_bag_that_counts_more_messages_than_it_has_is_told(tmp_path, spec):
-    """A database of ROS 2 does not see that rows are gone; `metadata.yaml` has their number."""
+def test_a_bag_with_fewer_messages_than_counted_is_reported(tmp_path, spec):
+    """A database of ROS 2 does not show that rows are missing; `metadata.yaml` has the number."""
     path, file = written(tmp_path, "sqlite3")
     with closing(sqlite3.connect(file)) as database, database:
         database.execute("delete from messages where id > 1500")
@@ -270,8 +270,8 @@ def test_a_bag_that_counts_more_messages_than_it_has_is_told(tmp_path, spec):
 
 
 @pytest.mark.parametrize("lost", ["/stop", "/temp"])
-def test_a_topic_whose_messages_are_all_gone_is_told(tmp_path, monkeypatch, lost):
-    """An index of MCAP without the chunks of a topic: as many are counted as were written."""
+def test_a_topic_without_its_counted_messages_is_reported(tmp_path, monkeypatch, lost):
+    """An MCAP index without the chunks of a topic; its statistics count all messages."""
     from mcap.writer import Writer
 
     sent = [

@@ -1,4 +1,4 @@
-"""Damaged logs of vehicles and measurements: told, or never green."""
+"""Damaged logs of vehicles and measurements are reported, or give no passed verdict."""
 
 import random
 import re
@@ -12,7 +12,7 @@ from tests.tools.logs import write_can
 from rvmon.errors import TraceError
 from rvmon.recordings.recording import messages_of
 
-pytestmark = pytest.mark.slow  # most of it is to load what reads these logs
+pytestmark = pytest.mark.slow  # most of it loads the libraries for these logs
 
 
 @pytest.mark.parametrize("name", FORMS)
@@ -33,7 +33,7 @@ def test_what_is_cut_off_is_never_green(tmp_path, name):
 
 
 def is_whole(cut, data, name):
-    """Whether it was cut just between two messages, which nothing in such a log can tell."""
+    """Whether the cut is between two messages, which such a log cannot show."""
     if name in ("a.asc", "a.log"):
         return cut.endswith(b"\n")
     size = {"a.ulg": 18, "a.bin": 16, "a.tlog": len(data) // len(STEADY)}[name]
@@ -85,13 +85,13 @@ def test_a_group_of_mdf_that_has_fewer_records_than_it_counts_is_told(tmp_path):
 
 
 def test_a_block_of_a_text_that_was_not_written_is_lost(tmp_path):
-    """Of the line within it and the next it makes one that is a frame to the library."""
+    """It joins a line with the next one to a line that the library accepts as a frame."""
     _, spec = written(tmp_path, "a.asc", FEW)
     path = write_can(tmp_path / "a.trc", [*FEW[:3], (FEW[3][0], 7.0, 0), *FEW[4:]])
     data = path.read_bytes()
     assert spec.evaluate(path).verdicts["R1"] == "F"
     start = data.rindex(b"\n", 0, data.index(b"E0 40")) + 1
-    behind = data.index(b"\n", start) + 9  # in the next line behind its number
+    behind = data.index(b"\n", start) + 9  # in the next line after its number
     path.write_bytes(data[:start] + bytes(behind - start) + data[behind:])
     assert spec.evaluate(path).verdicts["R1"] == "I"
 
@@ -117,7 +117,7 @@ def test_a_packet_whose_kind_is_damaged_is_lost(tmp_path):
 
 @pytest.mark.parametrize("ending", ["asc", "trc"])
 def test_a_line_of_can_that_cannot_be_read_is_lost(tmp_path, ending):
-    """The library passes over it; what it said may have failed, and at its neighbours' stamps."""
+    """The library skips it; it may hold a violation, even at its neighbours' stamps."""
     _, spec = written(tmp_path, "a.asc", FEW)
     path = write_can(tmp_path / f"a.{ending}", FEW)
     text = path.read_text()
@@ -139,8 +139,8 @@ def test_a_line_of_can_that_cannot_be_read_is_lost(tmp_path, ending):
     assert spec.evaluate(path).verdicts["R1"] == "I"
 
 
-def test_a_log_is_lost_behind_a_message_that_is_too_short(tmp_path):
-    """What reads ULog takes it for the end of the file."""
+def test_a_log_is_lost_after_a_message_that_is_too_short(tmp_path):
+    """The ULog library takes it for the end of the file."""
     path, spec = written(tmp_path, "a.ulg", STEADY)
     data = bytearray(path.read_bytes())
     size = 3 + struct.calcsize("<HQfB")
@@ -178,8 +178,8 @@ def test_a_format_that_says_no_length_does_not_hold_up_a_log(tmp_path):
 
 
 @pytest.mark.parametrize("ending", ["bin", "trc"])
-def test_of_damage_no_library_says_anything_itself(tmp_path, capfd, caplog, ending):
-    """A line for each byte of DataFlash, in C; lines of a text as they are, to the terminal."""
+def test_libraries_print_nothing_about_damage(tmp_path, capfd, caplog, ending):
+    """Otherwise a line for each byte of DataFlash, from C, and raw lines of a text."""
     path, spec = written(tmp_path, "a.bin" if ending == "bin" else "a.asc", STEADY)
     if ending == "trc":
         path = write_can(tmp_path / "a.trc", STEADY)

@@ -1,4 +1,4 @@
-"""What the fields of messages mean, by the tables."""
+"""The tables of the meanings of message fields."""
 
 from importlib import resources
 
@@ -25,7 +25,7 @@ PACKAGES = [
 
 
 def topics_of_ros():
-    """A topic for each type of message that ROS itself brings along."""
+    """A topic for each message type that comes with ROS."""
     from rosbags.typesys import Stores, get_typestore
 
     from rvmon.recordings.messages.ros import ros_topic
@@ -42,7 +42,7 @@ def topics_of_ros():
 
 @pytest.mark.slow
 def test_each_field_of_the_standard_packages_is_listed():
-    """A number is measured, or it is said why it is not; `?` is of those that senders decide."""
+    """Each number has a unit, or a reason why not; `?` marks those that senders decide."""
     left_open = set()
     for topic in topics_of_ros():
         assert not topic.fault

@@ -1,4 +1,4 @@
-"""Elements of arrays that are reached by their names."""
+"""Elements of arrays that are addressed by name."""
 
 import pytest
 from tests.tools.bags import START, write_json_mcap, write_ros1
@@ -95,7 +95,7 @@ def bound(tmp_path):
 @pytest.mark.slow
 @pytest.mark.parametrize("form", ["bag", "mcap"])
 def test_names_lead_to_elements(tmp_path, bound, form):
-    """Wherever they stand; a message without one of that name says nothing of it."""
+    """At any index; a message without the name does not update the signal."""
     if form == "bag":
         path = write_ros1(tmp_path / "a.bag", SENT, TYPES, OWN)
     else:
@@ -112,7 +112,7 @@ def test_names_lead_to_elements(tmp_path, bound, form):
 
 
 def test_a_name_may_be_mapped(tmp_path):
-    """As an element by its place."""
+    """Like an element with an index."""
     path = write_ros1(tmp_path / "a.bag", SENT[:1], TYPES, OWN)
     assert values(path, columns={"elbow": "/joints.position[wrist]"}) == [(0, {"elbow": 2.0})]
 

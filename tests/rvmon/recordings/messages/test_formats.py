@@ -52,7 +52,7 @@ def test_the_same_data_gives_the_records_that_csv_gives(tmp_path, name):
         assert repr(samples(spec, path)) == repr(samples(spec, table))
         verdicts |= {str(attempt.verdict) for attempt in found.attempts}
     assert {"P", "F"} <= verdicts
-    gc.collect()  # a file that was left open would be told
+    gc.collect()  # a file left open would be reported
 
 
 def samples(spec, path):
@@ -60,8 +60,8 @@ def samples(spec, path):
 
 
 @pytest.mark.parametrize("name", FORMATS)
-def test_a_deadline_runs_out_while_other_topics_go_on(tmp_path, name):
-    """A recording ends with its last message, also of a topic that nothing is declared for."""
+def test_a_deadline_passes_while_other_topics_continue(tmp_path, name):
+    """A recording ends with its last message, even of an undeclared topic."""
     sent = [("/go", START, {}), ("/speed", START + 10**9, {"data": 1.0})]
     path = FORMATS[name](tmp_path / name, sent)
     spec = rvmon.loads("spec s\nevent go\nrequirement R\n upon go then for 500 ms go")
@@ -92,8 +92,8 @@ def test_tables_in_tables_and_arrays_of_flatbuffers_are_read(tmp_path):
     assert [one.t for one in spec.recording(path)] == [START, START + 10**9]
 
 
-def test_a_field_that_the_first_message_of_json_leaves_unknown_is_there(tmp_path):
-    """Nobody knows of which kind it is; an event is not what each message says."""
+def test_a_field_that_is_null_in_the_first_json_message_exists(tmp_path):
+    """Its kind is unknown; an event is not a field of each message."""
     contents = [
         {"near": None, "all": [], "data": None},
         {"near": 0.5, "all": [2.0], "data": False},
@@ -144,8 +144,8 @@ def test_damaged_flatbuffers_are_told(tmp_path):
     assert len(told) > 1
 
 
-def test_an_older_bag_of_ros_2_needs_no_definitions_of_what_ros_brings_along(tmp_path):
-    """Bags of sqlite3 have their definitions from version 7 on."""
+def test_an_older_bag_of_ros_2_needs_no_definitions_of_standard_types(tmp_path):
+    """sqlite3 bags contain definitions from version 7 on."""
     sent = [("/speed", START, {"data": 1.0}), ("/pick", START + 1, {"id": 1})]
     path = write_ros2(tmp_path / "old", sent, "sqlite3", 8)
     import apsw
@@ -163,8 +163,8 @@ def test_an_older_bag_of_ros_2_needs_no_definitions_of_what_ros_brings_along(tmp
 
 @pytest.mark.slow
 @pytest.mark.parametrize("plugin", ["sqlite3", "mcap"])
-def test_a_folder_is_read_that_was_never_closed(tmp_path, says, plugin):
-    """By the command, too."""
+def test_a_folder_that_was_never_closed_is_read(tmp_path, says, plugin):
+    """Also by the command."""
     sent = sent_at_random(random.Random(1), 60)
     (tmp_path / "shop.rv").write_text(SHOP)
     spec = rvmon.load(tmp_path / "shop.rv")
@@ -182,8 +182,8 @@ def test_a_folder_is_read_that_was_never_closed(tmp_path, says, plugin):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("distribution", ["ROS2_DASHING", "ROS2_FOXY", "ROS2_HUMBLE", "LATEST"])
-def test_a_bag_without_definitions_is_read_by_those_of_its_distribution(tmp_path, distribution):
-    """`sensor_msgs/Range` got a field after Humble; older bags hold no definitions."""
+def test_a_bag_without_definitions_uses_those_of_its_distribution(tmp_path, distribution):
+    """`sensor_msgs/Range` got a field after Humble; older bags have no definitions."""
     from rosbags.typesys import Stores, get_typestore
 
     store = get_typestore(Stores[distribution])

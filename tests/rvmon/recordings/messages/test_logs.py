@@ -1,4 +1,4 @@
-"""Logs of vehicles and measurements: the records of CSV; what they say of losses and units."""
+"""Logs of vehicles and measurements: same records as CSV; losses and units in logs."""
 
 import random
 import struct
@@ -21,7 +21,7 @@ from rvmon.cli import main
 from rvmon.errors import TraceError
 from rvmon.recordings.recording import messages_of
 
-pytestmark = pytest.mark.slow  # most of it is to load what reads these logs
+pytestmark = pytest.mark.slow  # most of it loads the libraries for these logs
 
 OF_ALL, OF_CAN = (1, 1_003, 10_000), (15_625, 31_250)
 """Microseconds between messages; logs of CAN count from their start, and BLF drops fractions."""
@@ -106,7 +106,7 @@ def test_a_database_is_named_in_a_binding_or_lies_beside(tmp_path):
 
 
 @pytest.mark.slow
-def test_numbers_to_scale_are_the_nearest_doubles(tmp_path):
+def test_scaled_numbers_are_the_nearest_doubles(tmp_path):
     """33709 hundredths are 337.09, as mavlogdump writes them, and not 337.09000000000003."""
     pytest.importorskip("pymavlink")
     rows = [(1_000 * n, n, 0) for n in range(0, 65_536, 5)]
@@ -115,8 +115,8 @@ def test_numbers_to_scale_are_the_nearest_doubles(tmp_path):
     assert found == [n / 100 for n in range(0, 65_536, 5)]
 
 
-def test_lines_of_can_that_are_no_frames_are_no_loss(tmp_path):
-    """Comments, statistics, the state of the chip; an error frame says that nothing came."""
+def test_other_lines_than_frames_of_can_are_not_losses(tmp_path):
+    """Comments, statistics, the state of the chip; an error frame is a loss."""
     path, spec = written(tmp_path, "a.asc", FEW[:3])
     *head, first, second, third, end = path.read_text().splitlines()
     others = [
@@ -140,14 +140,14 @@ def test_lines_of_can_that_are_no_frames_are_no_loss(tmp_path):
         ("log", "(1.0025) vcan0 20000006#0003000000000000", "I"),
         ("log", "DROPCOUNT: dropped 2 CAN frames on 'vcan0' socket (total drops 2)", "I"),
         ("log", "(1.0025) vcan0 20000004#0004000000000000", "P"),
-        ("log", "(1.0025) vcan0 20000064#0000000000000000", "P"),  # 64 is Drive, too
+        ("log", "(1.0025) vcan0 20000064#0000000000000000", "P"),  # 64 is Drive as well
         ("trc", "   4)  1002.5 Warng FFFFFFFF 4 00 00 00 02 OVERRUN", "I"),
         ("trc", "   4   1002.500 ST     Rx - 4 00 00 00 40", "I"),
         ("trc", "   4   1002.500 ST     Rx - 4 00 00 00 0C", "P"),
     ],
 )
-def test_what_a_log_of_can_says_of_its_bus(tmp_path, ending, line, verdict):
-    """Frames that found no room are lost; in an error frame nobody said anything."""
+def test_losses_recorded_in_a_log_of_can(tmp_path, ending, line, verdict):
+    """Overflowed frames are lost; an error frame has no content."""
     _, spec = written(tmp_path, "a.asc", FEW)
     path = write_can(tmp_path / f"a.{ending}", FEW)
     lines = path.read_text().splitlines()
@@ -199,8 +199,8 @@ def test_first_specifications_are_made_of_it_and_pass(tmp_path, monkeypatch, nam
     assert main(["run", "mine.rv", str(path)]) == 0
 
 
-def test_what_points_down_is_no_height_and_no_climbing(tmp_path, says):
-    """In flight z is downwards: a climb rate of its velocity would have the wrong sign."""
+def test_a_downward_axis_is_not_a_height_or_climb_rate(tmp_path, says):
+    """In flight z points down: its velocity as a climb rate would have the wrong sign."""
     mavlink = pytest.importorskip("pymavlink.dialects.v20.ardupilotmega")
     link = mavlink.MAVLink(None, srcSystem=1, srcComponent=1)
     with (tmp_path / "a.tlog").open("wb") as file:
@@ -223,7 +223,7 @@ BO_ {number} Drive: 2 ECU
 """
 
 
-def test_a_channel_that_has_a_name_goes_by_it(tmp_path):
+def test_a_channel_with_a_name_is_called_by_it(tmp_path):
     """As candump writes it; other logs number their channels."""
     pytest.importorskip("can")
     (tmp_path / "a.dbc").write_text(NAMED_ALIKE.format(number=100, signal="speed", scale=1))

@@ -1,4 +1,4 @@
-"""Clocks of senders that differ from the log's are told, with how far."""
+"""Clocks of senders that differ from the log's are reported with their offset."""
 
 from functools import partial
 
@@ -30,7 +30,7 @@ value = "state"
 
 
 def recording(path, odom, scan, *, write=write_ros1, count=400):
-    """A bag of two topics with headers so many ms before the log, by the number of the message."""
+    """A bag of two topics with headers some ms before the log, by the number of the message."""
     sent = []
     for number in range(count):
         t = START + number * 10**8

@@ -1,4 +1,4 @@
-"""A folder of tables as one recording: joined by time, each file with its own absence."""
+"""A folder of tables is one recording, joined by time; each file has its own missing names."""
 
 import gzip
 import math
@@ -95,8 +95,8 @@ def test_a_file_says_which_is_which(tmp_path, says):
 
 
 @pytest.mark.parametrize("rows", ["0,0\n1,1\n2,0\n", "0,\n" * 1001 + "1,1\n2,0\n"])
-def test_a_0_is_no_occurrence_of_an_event(tmp_path, rows, says):
-    """As in a file by itself; whether a 1 is a number, or true, its declaration says."""
+def test_a_0_is_not_an_occurrence_of_an_event(tmp_path, rows, says):
+    """As in a single file; the declaration decides if 1 is a number or true."""
     place = folder(tmp_path / "a", {"stop.csv": "t,stop\n" + rows})
     spec = rvmon.loads("event stop\nrequirement R\n  upon stop\n  then always not stop\n")
     [attempt] = spec.evaluate(place / "stop.csv").attempts
@@ -157,7 +157,7 @@ def test_commands_take_such_a_folder_for_one_recording(tmp_path, monkeypatch, sa
 
 
 def test_a_file_of_a_topic_whose_last_line_has_no_end_is_refused(tmp_path):
-    """What it says last may be half of what it was."""
+    """Its last cell may be incomplete."""
     files = {"speed.csv": "t,speed\n0,0.5\n1,0.9"}
     with pytest.raises(RvmonError, match=r"speed\.csv: line 3: it has no end: was it cut off"):
         rvmon.loads(ONE).evaluate(folder(tmp_path / "a", files))

@@ -1,4 +1,4 @@
-"""Frames in frames, composed of what was heard; patterns of topics; comparisons of elements."""
+"""Composed transforms of frames; patterns of topics; comparisons of elements."""
 
 import math
 import random
@@ -32,7 +32,7 @@ requirement C
 
 
 def sent(outer, inner, shift, angle, topic="/tf"):
-    """A transform with a turn about the upright axis."""
+    """A transform with a rotation about the vertical axis."""
     x, y, z = shift
     half = angle / 2
     rotation = {"x": 0.0, "y": 0.0, "z": math.sin(half), "w": math.cos(half)}
@@ -53,8 +53,8 @@ def values(path, signal="tf.map.tool.translation.x"):
     return [((one.t - START) // 10**9, round(one.values[signal], 6)) for one in found if one.values]
 
 
-def test_a_frame_is_found_in_another_by_all_that_lies_between(tmp_path):
-    """By what was last heard of each; nothing is said before the way is whole."""
+def test_a_transform_is_composed_over_frames_in_between(tmp_path):
+    """With the last transform of each; there is no value before the chain is complete."""
     path = bag(
         tmp_path / "a.bag",
         [

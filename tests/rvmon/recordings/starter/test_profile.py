@@ -1,4 +1,4 @@
-"""The kinds that the reader of CSV finds are those that its cells say one by one."""
+"""The column kinds found by the CSV reader agree with a reference that reads cell by cell."""
 
 import csv
 import random
@@ -38,7 +38,7 @@ def _random_text(rng: random.Random) -> str:
 
 
 def _cell_by_cell(path):
-    """What the csv module reads, each cell looked at by itself."""
+    """The result of the csv module, examining each cell separately."""
     with open(path, encoding="utf-8-sig", newline="") as text:
         (_, header), *rows = split_lines(text)
     seen = {name: SeenValues() for name in header[1:]}
@@ -57,8 +57,8 @@ def test_the_reader_finds_what_cells_say_one_by_one(seed, tmp_path, monkeypatch)
     assert shapes_of(str(path)) == _cell_by_cell(path)
 
 
-def test_a_row_that_only_python_can_read_is_looked_at(tmp_path, monkeypatch):
-    """It is as long as a cell may be, in characters, and longer in bytes."""
+def test_a_row_that_only_python_can_read_is_examined(tmp_path, monkeypatch):
+    """Its cell has the maximal length in characters, and more bytes."""
     path = tmp_path / "a.csv"
     path.write_text(f"t,x,y\n0,{'é' * 20},3\n1,{'é' * 20},\n2,,\n")
     limit = csv.field_size_limit(30)
