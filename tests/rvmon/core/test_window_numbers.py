@@ -11,6 +11,7 @@ import rvmon
 from rvmon.language.checked.window_measures import Measured
 
 
+@pytest.mark.allocator
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("measured", "text"),
